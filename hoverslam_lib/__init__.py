@@ -1,0 +1,39 @@
+"""Numerical integration, taught by landing a Falcon 9 booster. SI units; h up, v negative while falling."""
+
+from hoverslam_lib.booster import FALCON_9, FALCON_9_LANDING_BURN, Booster
+from hoverslam_lib.descent import LANDING_BURN, Descent, Flight, fly
+from hoverslam_lib.ignition import Ignition, NoSoftLanding, best_ignition, hover_height, ignition_table
+from hoverslam_lib.integrators import METHODS, Method
+from hoverslam_lib.metrics import mape, max_error, nmae, observed_order, rmse
+from hoverslam_lib.oscillator import Oscillator
+from hoverslam_lib.planet import EARTH, MARS, MOON, Planet
+from hoverslam_lib.trajectory import Trajectory, integrate
+
+__all__ = [
+    "EARTH",
+    "FALCON_9",
+    "FALCON_9_LANDING_BURN",
+    "LANDING_BURN",
+    "MARS",
+    "METHODS",
+    "MOON",
+    "Booster",
+    "Descent",
+    "Flight",
+    "Ignition",
+    "Method",
+    "NoSoftLanding",
+    "Oscillator",
+    "Planet",
+    "Trajectory",
+    "best_ignition",
+    "fly",
+    "hover_height",
+    "ignition_table",
+    "integrate",
+    "mape",
+    "max_error",
+    "nmae",
+    "observed_order",
+    "rmse",
+]

@@ -1,0 +1,329 @@
+"""The descent of a booster, and the flight that an ignition time makes of it."""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from hoverslam_lib import _validate
+from hoverslam_lib._roots import bracketed_root
+from hoverslam_lib.booster import FALCON_9, FALCON_9_LANDING_BURN, Booster
+from hoverslam_lib.integrators import step_function
+from hoverslam_lib.planet import EARTH, Planet
+from hoverslam_lib.trajectory import time_grid
+
+SOFT_SPEED = 2.0
+"""Touching down at this speed or slower is a soft landing [m/s]."""
+
+HOVER_HEIGHT = 0.01
+"""A hover no higher than this above the ground is a soft landing: the engine is cut there [m]."""
+
+
+@dataclass(frozen=True)
+class Descent:
+    """A booster above a planet, before anything is said of its engine.
+
+    Parameters
+    ----------
+    booster : Booster
+    planet : Planet
+    height : float
+        h at t = 0 [m], greater than 0.
+    velocity : float
+        v = dh/dt at t = 0 [m/s], negative while falling.
+    """
+
+    booster: Booster = FALCON_9
+    planet: Planet = EARTH
+    height: float = 150e3
+    velocity: float = -2000.0
+
+    def __post_init__(self):
+        for name, kind in (("booster", Booster), ("planet", Planet)):
+            if not isinstance(getattr(self, name), kind):
+                raise TypeError(f"{name} must be a {kind.__name__}; got {getattr(self, name)!r}")
+        _validate.number("height", self.height, "m", above=0)
+        _validate.number("velocity", self.velocity, "m/s")
+
+    def drag(self, h, v):
+        """Force of the air [N] at height h [m] and velocity v [m/s], upward positive: it opposes the motion."""
+        return -self._drag_area * self.planet.air_density(h) * abs(v) * v
+
+    def weight(self, h, mass):
+        """Weight [N] of a mass [kg] at height h [m]: positive; it acts downward."""
+        return mass * self.planet.gravity(h)
+
+    def acceleration(self, *, throttle=0.0, mass=None, since=0.0):
+        """Return f(t, h, v) [m/s²] for one phase of the flight: a time in which the throttle does not change.
+
+        This is the sum of the forces, each with its own sign, over the mass: f = (thrust + drag - weight) / mass.
+
+        Parameters
+        ----------
+        throttle : float
+            0 for the engine off (the default), 1 for full thrust.
+        mass : float, optional
+            At the time `since` [kg]; the mass with a full tank if it is left out.
+        since : float
+            When the phase begins [s]. From then on the mass falls by throttle·burn_rate each second.
+        """
+        thrust, rate = throttle * self.booster.thrust, throttle * self.booster.burn_rate
+        mass = self.booster.initial_mass if mass is None else mass
+        # this is where a flight spends its time: drag is written out, and what does not change is looked up once
+        drag_area, density, gravity = self._drag_area, self.planet.air_density, self.planet.gravity
+
+        def f(t, h, v):
+            return (thrust - drag_area * density(h) * abs(v) * v) / (mass - rate * (t - since)) - gravity(h)
+
+        return f
+
+    @cached_property
+    def _drag_area(self):
+        return 0.5 * self.booster.drag_coefficient * self.booster.area
+
+    def _escapes(self, h, v):
+        """Whether a booster that coasts upward can never turn round, for certain.
+
+        The air above takes at most ½·C_D·A·ρ·H·v² of its energy, H being the scale height.
+        """
+        lost = self._drag_area * self.planet.air_density(h) * self.planet.scale_height / self.booster.initial_mass
+        return v > 0 and v * v * (0.5 - lost) >= self.planet.gravity(h) * (self.planet.radius + h)
+
+    def _shortest_fall(self):
+        """A time before which no flight can end on the ground [s]: no air, gravity everywhere as strong as at h = 0."""
+        g = self.planet.gravity(0.0)
+        root = math.sqrt(self.velocity**2 + 2 * g * self.height)
+        return 2 * self.height / (root - self.velocity) if self.velocity < 0 else (self.velocity + root) / g
+
+
+LANDING_BURN = Descent(FALCON_9_LANDING_BURN, EARTH, height=10e3, velocity=-350.0)
+"""One engine needs a slower start than the paper's: round numbers, like those on the screen of a landing webcast."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Flight:
+    """What became of a descent.
+
+    Attributes
+    ----------
+    descent : Descent
+    t_ignite : float or None
+        [s]; None for a free fall.
+    t, h, v, mass : ndarray, shape (n,)
+        Time [s], height [m], velocity [m/s] and mass [kg] at the end of each step, the start first.
+    throttle : ndarray, shape (n,)
+        From each of these times on, in [0, 1]; the last repeats the one before it.
+    outcome : str
+        "soft landing", "crash", "stopped too high" (hovered above the ground, then climbed until the tank was empty)
+        or "out of propellant" (the tank was empty above the ground, without a hover).
+    touchdown : tuple of float or None
+        (t, v) [s, m/s].
+    hover : tuple of float or None
+        (t, h) [s, m] where v first changed from - to + with the engine on.
+    """
+
+    descent: Descent
+    t_ignite: float | None
+    t: np.ndarray
+    h: np.ndarray
+    v: np.ndarray
+    mass: np.ndarray
+    throttle: np.ndarray
+    outcome: str
+    touchdown: tuple | None = None
+    hover: tuple | None = None
+
+    @cached_property
+    def felt_acceleration(self):
+        """What an accelerometer on board reads, (thrust + drag)/mass, from each of the times on [m/s²], shape (n,)."""
+        return self._felt(self.throttle, slice(None))
+
+    @cached_property
+    def peak_acceleration(self):
+        """Largest felt acceleration at the ends of the steps, before and after each change of throttle [m/s²]."""
+        before = self._felt(self.throttle[:-1], slice(1, None))
+        return float(max(np.max(np.abs(self.felt_acceleration)), np.max(np.abs(before))))
+
+    def _felt(self, throttle, at):
+        thrust = throttle * self.descent.booster.thrust
+        return (thrust + self.descent.drag(self.h[at], self.v[at])) / self.mass[at]
+
+    def to_frame(self):
+        """The flight as a pandas DataFrame, one row a step, units in the headers."""
+        import pandas as pd
+
+        return pd.DataFrame(
+            {
+                "t [s]": self.t,
+                "h [m]": self.h,
+                "v [m/s]": self.v,
+                "mass [kg]": self.mass,
+                "throttle": self.throttle,
+                "felt acceleration [m/s²]": self.felt_acceleration,
+            }
+        )
+
+    def __repr__(self):
+        parts = []
+        if self.hover:
+            parts.append(f"hover {self.hover[1]:.3f} m above the ground at {self.hover[0]:.3f} s")
+        if self.touchdown:
+            parts.append(f"touchdown with {self.touchdown[1]:.3f} m/s at {self.touchdown[0]:.3f} s")
+        else:
+            parts.append(f"tank empty at {self.t[-1]:.3f} s, h = {self.h[-1]:.1f} m, v = {self.v[-1]:.1f} m/s")
+        return f"<Flight: {self.outcome}; {'; '.join(parts)}>"
+
+
+def fly(descent, t_ignite, *, dt=0.02, method="rk4", controller=None):
+    """Fly a descent: fall freely until t_ignite, then burn until the ground is reached or the tank is empty (§1.4).
+
+    Steps have the length dt, but one ends exactly on ignition, where v changes sign, where the tank is empty and at
+    the ground, so that within a step f is smooth and the method keeps its order.
+
+    Parameters
+    ----------
+    descent : Descent
+    t_ignite : float or None
+        Ignition time [s], at least 0; None for a free fall. Ignition after the impact is a crash without a burn.
+    dt : float
+        Step size [s], greater than 0.
+    method : str or callable
+        A key of `METHODS`, or a step function of one's own.
+    controller : callable, optional
+        ``controller(t, h, v, mass)`` → throttle in [0, 1], asked at ignition and every dt after it, and held in
+        between. Without one the throttle is 1.
+
+    Returns
+    -------
+    Flight
+
+    Raises
+    ------
+    ValueError, TypeError
+        If an argument is not allowed, if the flight would take more than ten million steps, if dt is so large that
+        the numbers overflow, or if the booster never comes down.
+    """
+    if not isinstance(descent, Descent):
+        raise TypeError(f"descent must be a Descent; got {descent!r}")
+    if t_ignite is not None:
+        t_ignite = _validate.number("t_ignite", t_ignite, "s", least=0)
+    if controller is not None and not callable(controller):
+        raise TypeError(f"controller must be a function of (t, h, v, mass); got {controller!r}")
+    dt = _validate.number("dt", dt, "s", above=0)
+    at_least = descent._shortest_fall()
+    if t_ignite is not None:
+        at_least = min(at_least, t_ignite + descent.booster.burn_duration)
+    _validate.step_count(at_least / dt, dt)
+    step = step_function(method)
+
+    coasted, landed = coast(descent, math.inf if t_ignite is None else t_ignite, dt=dt, step=step)
+    nodes = [(t, h, v, descent.booster.initial_mass, 0.0) for t, h, v in coasted]
+    hover = None
+    if not landed:
+        nodes[-1:], landed, hover = _burn(descent, *coasted[-1], controller, dt=dt, step=step)
+
+    t, h, v, mass, throttle = (np.array(column) for column in zip(*nodes, strict=True))
+    if landed:
+        outcome = "soft landing" if abs(v[-1]) <= SOFT_SPEED else "crash"
+    else:
+        outcome = "out of propellant" if hover is None else "stopped too high"
+    touchdown = (float(t[-1]), float(v[-1])) if landed else None
+    return Flight(descent, t_ignite, t, h, v, mass, throttle, outcome, touchdown, hover)
+
+
+def coast(descent, t_end, *, dt, step):
+    """Fall freely to t_end or to the ground, whichever comes first.
+
+    Returns
+    -------
+    nodes : list of tuple
+        (t, h, v) [s, m, m/s] at the end of each step, the start first.
+    landed : bool
+        Whether the last of them is the ground.
+    """
+    f = descent.acceleration()
+    t, h, v = 0.0, float(descent.height), float(descent.velocity)
+    nodes = [(t, h, v)]
+    for t_next in time_grid(0.0, t_end, dt):
+        if t_end == math.inf and descent._escapes(h, v):
+            raise ValueError(f"the booster never comes down: at h = {h:.0f} m it still climbs at {v:.0f} m/s")
+        while t < t_next:
+            s, h, v, event = advance(step, f, t, h, v, t_next - t)
+            t = t_next if event is None else t + s
+            nodes.append((t, h, v))
+            if event == "ground":
+                return nodes, True
+    return nodes, False
+
+
+def _burn(descent, t, h, v, controller, *, dt, step):
+    """Burn from (t, h, v) until the ground is reached or the tank is empty: nodes, landed, hover."""
+    booster = descent.booster
+    mass, throttle, hover, nodes = booster.initial_mass, None, None, []
+    for t_next in time_grid(t, math.inf, dt):
+        asked = 1.0 if controller is None else _ask(controller, t, h, v, mass)
+        if asked != throttle:
+            throttle, rate, since, mass_then = asked, asked * booster.burn_rate, t, mass
+            f = descent.acceleration(throttle=throttle, mass=mass, since=since)
+            t_empty = since + (mass - booster.dry_mass) / rate if rate else math.inf
+        t_next = min(t_next, t_empty)
+        while t < t_next:
+            nodes.append((t, h, v, mass, throttle))
+            falling = v < 0
+            s, h, v, event = advance(step, f, t, h, v, t_next - t)
+            t = t_next if event is None else t + s
+            mass = mass_then - rate * (t - since)
+            hovers = event == "turn" and falling and throttle > 0
+            if hovers and hover is None:
+                hover = (t, h)
+            if event == "ground" or (hovers and h <= HOVER_HEIGHT):
+                return [*nodes, (t, h, v, mass, throttle)], True, hover
+        if t >= t_empty:
+            # a tank that only just suffices runs dry within rounding of the ground
+            landed = h <= HOVER_HEIGHT and abs(v) <= SOFT_SPEED
+            return [*nodes, (t, h, v, booster.dry_mass, throttle)], landed, hover
+
+
+def advance(step, f, t, h, v, dt, *, ground=0.0):
+    """Take one step of dt, or the part of it up to the first event.
+
+    The length of a shortened step is found by a bracketed root search on the step itself: no interpolant, so the
+    method keeps its order. Where v changes sign, the search is for that turn first, because between two points above
+    the ground the turn may lie below it.
+
+    Returns
+    -------
+    length : float
+        Of the step taken [s].
+    h, v : float
+        State at its end [m, m/s].
+    event : str or None
+        "turn" (v has changed sign; it is 0 now), "ground" (h is 0 now), or None.
+    """
+
+    try:
+        h_end, v_end = step(f, t, h, v, dt)
+    except OverflowError:
+        h_end = v_end = math.inf
+    if not math.isfinite(h_end + v_end):
+        raise ValueError(f"the numbers overflow at t = {t:g} s: dt = {dt:g} s is too large for this method")
+    turns = v < 0 <= v_end or v > 0 >= v_end
+    if not turns and h_end > ground:
+        return dt, h_end, v_end, None
+
+    def to(s):
+        return step(f, t, h, v, s)
+
+    end = dt
+    if turns:
+        end = bracketed_root(lambda s: to(s)[1], 0.0, dt, v, v_end, xtol=1e-14 * dt)
+        h_end, _ = to(end)
+        if h_end >= ground:
+            return end, h_end, 0.0, "turn"
+    end = bracketed_root(lambda s: to(s)[0] - ground, 0.0, end, h - ground, h_end - ground)
+    return end, ground, to(end)[1], "ground"
+
+
+def _ask(controller, t, h, v, mass):
+    return _validate.number("controller(t, h, v, mass)", controller(t, h, v, mass), "throttle", least=0, most=1)

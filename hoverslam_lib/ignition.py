@@ -1,0 +1,269 @@
+"""When to ignite: the optimum of the equation, and tables of what other times lead to."""
+
+import math
+from bisect import bisect_right
+from dataclasses import dataclass
+from functools import cache
+from operator import itemgetter
+
+from hoverslam_lib import _validate
+from hoverslam_lib._roots import bracketed_root
+from hoverslam_lib.descent import Descent, advance, coast, fly
+from hoverslam_lib.integrators import dop8, rk4, step_function
+from hoverslam_lib.trajectory import time_grid
+
+
+class NoSoftLanding(ValueError):
+    """No ignition time lands this booster softly.
+
+    Attributes
+    ----------
+    reason : str
+        "thrust" (not above the dry weight), "too late" (already at t = 0), "tank" (too small) or
+        "never comes down".
+    amount : float
+        By how much: the thrust that is missing [N], the depth below the ground at which a burn from t = 0 would stop
+        [m], the propellant that is missing [kg], the speed above escape speed [m/s].
+    """
+
+    def __init__(self, reason, amount, message):
+        super().__init__(message)
+        self.reason, self.amount = reason, amount
+
+
+@dataclass(frozen=True)
+class Ignition:
+    """The ignition that brings the booster to rest at height 0.
+
+    Attributes
+    ----------
+    t_ignite, h_ignite, v_ignite : float
+        Time [s], height [m] and velocity [m/s] at ignition.
+    t_touchdown : float
+        [s].
+    propellant_left : float
+        At touchdown [kg].
+    """
+
+    t_ignite: float
+    h_ignite: float
+    v_ignite: float
+    t_touchdown: float
+    propellant_left: float
+
+
+def hover_height(descent, t_ignite, *, dt=0.02, method="rk4"):
+    """Signed height [m] at which a burn from t_ignite on comes to rest, the ground being ignored.
+
+    Above 0 the booster stops too high; below 0 it crashes, and this is how much height was missing. It falls steadily
+    as ignition gets later, also where the touchdown speed has jumps, so it is the number to search on. It is always
+    defined while thrust exceeds the dry weight: only here, thrust stays on at dry mass when the tank is empty.
+
+    Parameters
+    ----------
+    descent : Descent
+    t_ignite : float
+        [s], at least 0.
+    dt : float
+        Step size [s].
+    method : str or callable
+        A key of `METHODS`, or a step function.
+
+    Returns
+    -------
+    float
+        inf if the booster climbs away and never stops, -inf if it would stop deeper than the air or the planet can be
+        continued below the ground, nan for an ignition after the impact.
+
+    Raises
+    ------
+    NoSoftLanding
+        If thrust does not exceed the dry weight.
+    """
+    dt = _validate.number("dt", dt, "s", above=0)
+    t_ignite = _validate.number("t_ignite", t_ignite, "s", least=0)
+    _validate.step_count(min(t_ignite, descent._shortest_fall()) / dt, dt)
+    step = step_function(method)
+    _require_thrust(descent)
+    nodes, landed = coast(descent, t_ignite, dt=dt, step=step)
+    return math.nan if landed else _stop(descent, *nodes[-1], dt=dt, step=step)[1]
+
+
+def best_ignition(descent):
+    """Find the ignition time that brings the booster to rest at height 0.
+
+    The optimum of the equation, not of a step size: steps are halved until the time no longer changes. While falling,
+    the signed hover height falls strictly with the ignition time, so there is one root; a booster that starts upward
+    may have more, and the latest is taken.
+
+    Parameters
+    ----------
+    descent : Descent
+
+    Returns
+    -------
+    Ignition
+
+    Raises
+    ------
+    NoSoftLanding
+        With its reason and by how much.
+    """
+    if not isinstance(descent, Descent):
+        raise TypeError(f"descent must be a Descent; got {descent!r}")
+    _require_thrust(descent)
+    _require_return(descent)
+    dt = _first_dt(descent)
+    found = _solve(descent, dt / 2, rk4)  # a first look
+    found = _solve(descent, dt, dop8, near=found.t_ignite)
+    for _ in range(12):
+        dt /= 2
+        before, found = found, _solve(descent, dt, dop8, near=found.t_ignite)
+        # order 8: the error left is some hundred times smaller than this change
+        if abs(found.t_ignite - before.t_ignite) <= 1e-10 * found.t_touchdown:
+            break
+    else:
+        raise ArithmeticError(f"the ignition time did not settle down to dt = {dt:g} s")
+
+    if found.propellant_left < -1e-9 * descent.booster.propellant_mass:
+        missing = -found.propellant_left
+        burn_time = found.t_touchdown - found.t_ignite
+        raise NoSoftLanding(
+            "tank",
+            missing,
+            f"the tank is too small: the burn takes {burn_time:.2f} s, the tank is empty after "
+            f"{descent.booster.burn_duration:.2f} s; {missing:.0f} kg of propellant are missing, and more to lift them",
+        )
+    return found
+
+
+def ignition_table(t_ignite, *, dt, methods=("rk4", "symplectic_euler"), descent=None):
+    """What becomes of each ignition time: the paper's Figures 7.7-7.9 for the right equation.
+
+    Parameters
+    ----------
+    t_ignite : iterable of float
+        Ignition times [s].
+    dt : float
+        Step size [s].
+    methods : iterable of str
+        Keys of `METHODS`.
+    descent : Descent, optional
+        The paper's, if left out.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row for each ignition time. Columns in two levels: the method, then "hover height [m]" (signed, see
+        `hover_height`), "touchdown velocity [m/s]" (nan if there was no touchdown) and "outcome".
+    """
+    import pandas as pd
+
+    descent = Descent() if descent is None else descent
+    times = [_validate.number("t_ignite", t, "s", least=0) for t in t_ignite]
+    rows = []
+    for t in times:
+        row = {}
+        for method in methods:
+            flight = fly(descent, t, dt=dt, method=method)
+            row[method, "hover height [m]"] = hover_height(descent, t, dt=dt, method=method)
+            row[method, "touchdown velocity [m/s]"] = flight.touchdown[1] if flight.touchdown else math.nan
+            row[method, "outcome"] = flight.outcome
+        rows.append(row)
+    table = pd.DataFrame(rows, index=pd.Index(times, name="t_ignite [s]"))
+    table.columns = pd.MultiIndex.from_tuples(table.columns)
+    return table
+
+
+def _require_thrust(descent):
+    booster = descent.booster
+    missing = descent.weight(0.0, booster.dry_mass) - booster.thrust
+    if missing >= 0:
+        raise NoSoftLanding(
+            "thrust",
+            missing,
+            f"thrust must exceed the dry weight on the ground: {booster.thrust:.6g} N is {missing:.3g} N too little",
+        )
+
+
+def _require_return(descent):
+    h, v = descent.height, descent.velocity
+    if descent._escapes(h, v):
+        excess = v - math.sqrt(2 * descent.planet.gravity(h) * (descent.planet.radius + h))
+        raise NoSoftLanding("never comes down", excess, f"the booster never comes down: {excess:.1f} m/s above escape")
+
+
+def _first_dt(descent):
+    """A step to begin with: a small part of the flight, and of the time in which the air changes."""
+    fastest = math.sqrt(descent.velocity**2 + 2 * descent.planet.gravity(0.0) * descent.height)
+    return min(descent._shortest_fall() / 24, descent.planet.scale_height / fastest)
+
+
+def _solve(descent, dt, step, near=None):
+    """The optimum as one method with one dt sees it."""
+    nodes, _ = coast(descent, math.inf, dt=dt, step=step)
+    end = nodes[-1][0]
+    f = descent.acceleration()
+
+    @cache
+    def lit(t_ignite):
+        """State at ignition, with one partial step from the stored fall, and where a burn from there stops."""
+        t, h, v = nodes[bisect_right(nodes, t_ignite, key=itemgetter(0)) - 1]
+        h, v = step(f, t, h, v, t_ignite - t)
+        return h, v, *_stop(descent, t_ignite, h, v, dt=dt, step=step)
+
+    def missed_by(t_ignite):
+        return lit(t_ignite)[-1]
+
+    bracket = None
+    if near is not None:
+        low, high = max(near - 1e-5 * end, 0.0), min(near + 1e-5 * end, end)
+        bracket = low, high, missed_by(low), missed_by(high)
+    if bracket is None or not bracket[2] >= 0 >= bracket[3]:
+        bracket = _bracket(missed_by, nodes)
+    t_ignite = bracketed_root(missed_by, *bracket, xtol=1e-13 * end)
+    h, v, t_touchdown, _ = lit(t_ignite)
+    left = descent.booster.propellant_mass - descent.booster.burn_rate * (t_touchdown - t_ignite)
+    return Ignition(t_ignite, h, v, t_touchdown, left)
+
+
+def _bracket(missed_by, nodes):
+    """Two ignition times between which the hover height changes sign, and the hover heights there."""
+    high, g_high = nodes[-1][0], missed_by(nodes[-1][0])
+    falling = next(i for i, (_, _, v) in enumerate(nodes) if v <= 0)
+    for t, _, _ in nodes[falling::-1]:  # from the top of the flight, back through the ascent if there is one
+        g = missed_by(t)
+        if g >= 0:
+            return t, high, g, g_high
+        high, g_high = t, g
+    raise NoSoftLanding(
+        "too late",
+        -g_high,
+        f"too late already at t = 0: a burn from the start on would stop {-g_high:.1f} m below the ground",
+    )
+
+
+def _stop(descent, t, h, v, *, dt, step):
+    """When and where a full burn from (t, h, v) comes to rest, the ground ignored: (t, h). See `hover_height`."""
+    booster, planet = descent.booster, descent.planet
+    deepest = -2 * planet.scale_height if planet.surface_density else -planet.radius / 2
+    if v == 0 and descent.acceleration(throttle=1.0)(0.0, h, v) >= 0:
+        return t, h
+    t_empty = t + booster.burn_duration
+    burning = descent.acceleration(throttle=1.0, since=t)
+
+    def dry(t, h, v):
+        return (booster.thrust + descent.drag(h, v)) / booster.dry_mass - planet.gravity(h)
+
+    for f, t_end in ((burning, t_empty), (dry, math.inf)):
+        for t_next in time_grid(t, t_end, dt):
+            while t < t_next:
+                falling = v < 0
+                s, h, v, event = advance(step, f, t, h, v, t_next - t, ground=-math.inf)
+                t = t_next if event is None else t + s
+                if event == "turn" and falling:
+                    return t, h
+                if h < deepest:
+                    return t, -math.inf
+        if v > 0:
+            return math.inf, math.inf  # dry and climbing with thrust above weight

@@ -1,0 +1,101 @@
+"""A run of a one-step method over an interval of time."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from hoverslam_lib import _validate
+from hoverslam_lib.integrators import step_function
+
+
+@dataclass(frozen=True, eq=False)
+class Trajectory:
+    """The states that a method computed, the initial one included.
+
+    Attributes
+    ----------
+    t : ndarray, shape (n + 1,)
+        Time [s].
+    h, v : ndarray, shape (n + 1,) or (n + 1, ...)
+        Height [m] and velocity [m/s]; further axes are those of the initial values.
+    """
+
+    t: np.ndarray
+    h: np.ndarray
+    v: np.ndarray
+
+    def to_frame(self):
+        """The run as a pandas DataFrame, one row a sample, units in the headers."""
+        import pandas as pd
+
+        columns = {"t [s]": self.t}
+        for name, unit, values in (("h", "m", self.h), ("v", "m/s", self.v)):
+            if values.ndim == 1:
+                columns[f"{name} [{unit}]"] = values
+            else:
+                for i, column in enumerate(values.reshape(len(values), -1).T):
+                    columns[f"{name}{i} [{unit}]"] = column
+        return pd.DataFrame(columns)
+
+
+def time_grid(t0, t_end, dt):
+    """Yield t0 + dt, t0 + 2·dt, … and last t_end itself, so that the last step is as long as is left.
+
+    A remainder below a billionth of a step is rounding and makes no step of its own. t_end may be infinite; after
+    ten million steps the grid raises ValueError.
+    """
+    steps = math.inf if t_end == math.inf else math.ceil((t_end - t0) / dt - 1e-9)
+    i = 1
+    while i < steps:
+        if i > _validate.MAX_STEPS:
+            _validate.step_count(i, dt)
+        yield t0 + i * dt
+        i += 1
+    if t_end > t0:
+        yield t_end
+
+
+def integrate(f, h0, v0, *, dt, t_end, t0=0.0, method="rk4"):
+    """Solve ḧ = f(t, h, ḣ) from t0 to t_end in steps of dt; the last is shortened to end on t_end.
+
+    Parameters
+    ----------
+    f : callable
+        ``f(t, h, v)`` → acceleration [m/s²], a float, or an array of the shape of h.
+    h0, v0 : float or array_like
+        Height [m] and velocity [m/s] at t0.
+    dt : float
+        Step size [s], greater than 0.
+    t_end, t0 : float
+        End and start [s].
+    method : str or callable
+        A key of `METHODS`, or a step function of one's own.
+
+    Returns
+    -------
+    Trajectory
+
+    Raises
+    ------
+    ValueError, TypeError
+        If an argument is not finite, dt is not greater than 0, t_end lies before t0, the method is unknown, or the
+        run would take more than ten million steps.
+    """
+    dt = _validate.number("dt", dt, "s", above=0)
+    t = t0 = _validate.number("t0", t0, "s")
+    t_end = _validate.number("t_end", t_end, "s", least=t0)
+    _validate.step_count((t_end - t0) / dt, dt)
+    step = step_function(method)
+    h, v = _validate.state("h0", h0, "m"), _validate.state("v0", v0, "m/s")
+    if np.shape(h) != np.shape(v):
+        h, v = (x.copy() for x in np.broadcast_arrays(h, v))
+
+    ts, hs, vs = [t], [h], [v]
+    for t_next in time_grid(t0, t_end, dt):
+        h, v = step(f, t, h, v, t_next - t)
+        t = t_next
+        ts.append(t)
+        hs.append(h)
+        vs.append(v)
+    return Trajectory(np.array(ts), np.array(hs), np.array(vs))

@@ -1,0 +1,237 @@
+"""The life of a notebook.
+
+``python -m hoverslam_lib.course refresh [LESSON…]`` executes lessons from top to bottom in a fresh kernel, cleans and
+checks what they store. ``python -m hoverslam_lib.course copy FOLDER`` makes a student's working copy that git leaves
+alone; with ``--lesson 03`` a fresh copy of that lesson beside the edited one.
+"""
+
+import argparse
+import re
+import shutil
+import sys
+import time
+from pathlib import Path
+
+NOTEBOOKS = Path(__file__).resolve().parent.parent / "notebooks"
+LONGEST_CELL = 15
+LARGEST_FILE = 700_000
+NOT_FOR_STUDENTS = ("solutions", "instructor_guide.md", "__pycache__", ".ipynb_checkpoints")
+
+
+def lessons(names=()):
+    """Paths of the notebooks, in order; `names` picks some by number or by the beginning of the name.
+
+    Raises
+    ------
+    ValueError
+        If a name fits no notebook, or the checkout is missing.
+    """
+    paths = sorted(NOTEBOOKS.glob("*.ipynb"))
+    if not paths:
+        raise ValueError(f"there are no notebooks in {NOTEBOOKS}: run this from a checkout of the course")
+    chosen = []
+    for name in names:
+        fitting = [path for path in paths if path.name.startswith(Path(name).name)]
+        if not fitting:
+            raise ValueError(f"no lesson begins with {name!r}; there are {', '.join(path.stem for path in paths)}")
+        chosen += fitting
+    return chosen or paths
+
+
+def refresh(path):
+    """Execute one notebook in a fresh kernel, clean it, write it if it changed, and return its `problems`.
+
+    Raises
+    ------
+    nbclient.exceptions.CellExecutionError
+        If a cell raises; the file is left as it was.
+    """
+    import nbformat
+    from nbclient import NotebookClient
+
+    notebook = nbformat.read(path, as_version=4)
+    for cell in notebook.cells:
+        if cell.cell_type == "code":
+            cell.outputs, cell.execution_count = [], None
+    NotebookClient(
+        notebook,
+        kernel_name="python3",
+        timeout=600,
+        record_timing=False,
+        coalesce_streams=True,
+        resources={"metadata": {"path": str(path.parent)}},
+    ).execute()
+    _clean(notebook)
+    text = nbformat.writes(notebook) + "\n"
+    if text != path.read_text(encoding="utf-8"):
+        path.write_text(text, encoding="utf-8")
+    return problems(path)
+
+
+def _clean(notebook):
+    """Keep what is the same on every machine: no versions, no timings, no random names of cells."""
+    notebook.metadata = {
+        "kernelspec": {"display_name": "Python 3 (ipykernel)", "language": "python", "name": "python3"},
+        "language_info": {"name": "python"},
+    }
+    notebook.nbformat, notebook.nbformat_minor = 4, 5
+    for i, cell in enumerate(notebook.cells):
+        tags = cell.metadata.get("tags")
+        cell.metadata = {"tags": tags} if tags else {}
+        cell["id"] = f"cell-{i:03d}"
+        for output in cell.get("outputs", []):
+            if "metadata" in output:
+                output["metadata"] = {}
+
+
+def problems(path):
+    """What is wrong with a stored notebook, as a list of sentences; an empty list if nothing is."""
+    import nbformat
+
+    found = []
+    notebook = nbformat.read(path, as_version=4)
+    if notebook.metadata.get("kernelspec", {}).get("name") != "python3":
+        found.append("its kernel is not python3")
+    if path.stat().st_size > LARGEST_FILE:
+        found.append(f"it has {path.stat().st_size:,} bytes; {LARGEST_FILE:,} are allowed")
+    code = [cell for cell in notebook.cells if cell.cell_type == "code"]
+    if [cell.execution_count for cell in code] != list(range(1, len(code) + 1)):
+        found.append("its execution counts are not 1, 2, 3 …: run it from top to bottom in a fresh kernel")
+    for number, cell in enumerate(code, start=1):
+        found += [f"cell [{number}] {problem}" for problem in _cell_problems(cell)]
+    for cell in notebook.cells:
+        if cell.cell_type == "markdown":
+            found += [
+                f"an image has no alternative text: {image}" for image in re.findall(r"!\[\]\([^)]*\)", cell.source)
+            ]
+    return found
+
+
+def _cell_problems(cell):
+    lines = [text for text in cell.source.splitlines() if text.strip()]
+    if not lines:
+        yield "is empty"
+    if len(lines) > LONGEST_CELL:
+        yield f"has {len(lines)} lines; {LONGEST_CELL} are allowed"
+    if re.search(r"^\s*from\s+\S+\s+import\s+\*", cell.source, re.MULTILINE):
+        yield "imports *"
+    if re.search(
+        r"\b(urllib|requests|urlopen|httpx|socket)\b|^\s*[!%]\s*(pip|conda|curl|wget)", cell.source, re.MULTILINE
+    ):
+        yield "uses the network"
+    if lines and lines[-1].rstrip().endswith(";"):
+        yield "ends in a semicolon"
+    for output in cell.outputs:
+        if output.output_type == "error" and "raises-exception" not in cell.metadata.get("tags", []):
+            yield f"stores an error: {output.ename}"
+        if output.get("name") == "stderr":
+            yield f"stores a warning or other stderr: {output.text.strip()[:80]}"
+        data = output.get("data", {})
+        if any(kind.startswith("image/") for kind in data):
+            yield "stores an image without alternative text: use plotting.show"
+        if "application/vnd.jupyter.widget-view+json" in data:
+            yield "stores a widget, which shows 'model not found' until it is run"
+        for alt in _alternative_texts(data.get("text/html", "")):
+            if not re.search(r"\d", alt):
+                yield f"stores an image whose alternative text has no numbers: {alt!r}"
+
+
+def _alternative_texts(html):
+    """The alt of every <img> in a piece of HTML, empty where there is none."""
+    for tag in re.findall(r"<img\b[^>]*>", html):
+        alt = re.search(r'\balt="([^"]*)"', tag)
+        yield alt.group(1) if alt else ""
+
+
+def copy(folder, lesson=None):
+    """Make a working copy of the notebooks in `folder`; nothing that is there is overwritten.
+
+    Parameters
+    ----------
+    folder : path
+        Made if need be. A ``.gitignore`` in it keeps git away.
+    lesson : str, optional
+        Copy only this lesson, under a new name if there is an edited one already.
+
+    Returns
+    -------
+    list of Path
+        What was written.
+    """
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    ignore = folder / ".gitignore"
+    if not ignore.exists():
+        ignore.write_text("*\n", encoding="utf-8")
+    if lesson is not None:
+        return [_copy_beside(path, folder) for path in lessons([lesson])]
+    written = []
+    for source in sorted(NOTEBOOKS.iterdir()):
+        target = folder / source.name
+        if source.name in NOT_FOR_STUDENTS or target.exists():
+            continue
+        if source.is_dir():
+            shutil.copytree(source, target)
+        else:
+            shutil.copy(source, target)
+        written.append(target)
+    return written
+
+
+def _copy_beside(source, folder):
+    target, n = folder / source.name, 1
+    while target.exists():
+        n += 1
+        target = folder / f"{source.stem}_fresh_{n}.ipynb"
+    return Path(shutil.copy(source, target))
+
+
+def main(arguments=None):
+    """Command line: see the module's docstring. Returns the exit code."""
+    parser = argparse.ArgumentParser(prog="python -m hoverslam_lib.course", description="The life of a notebook.")
+    commands = parser.add_subparsers(dest="command", required=True)
+    refreshing = commands.add_parser("refresh", help="execute lessons, clean and check what they store")
+    refreshing.add_argument("lesson", nargs="*", help="number or name; all lessons if left out")
+    copying = commands.add_parser("copy", help="make a working copy that git leaves alone")
+    copying.add_argument("folder")
+    copying.add_argument("--lesson", help="number or name: a fresh copy of this lesson beside the edited one")
+    options = parser.parse_args(arguments)
+    try:
+        return _refresh_all(options.lesson) if options.command == "refresh" else _copy_all(options)
+    except ValueError as error:
+        print(error, file=sys.stderr)
+        return 2
+
+
+def _refresh_all(names):
+    from nbclient.exceptions import CellExecutionError
+
+    failed = 0
+    paths = lessons(names)
+    for n, path in enumerate(paths, start=1):
+        print(f"[{n}/{len(paths)}] {path.name} ", end="", flush=True)
+        start = time.perf_counter()
+        try:
+            found = refresh(path)
+        except CellExecutionError as error:
+            found = [f"a cell raises, and the file is left as it was:\n{error}"]
+        print(f"{time.perf_counter() - start:.0f} s", "ok" if not found else "")
+        for problem in found:
+            print(f"    {problem}")
+        failed += bool(found)
+    return 1 if failed else 0
+
+
+def _copy_all(options):
+    written = copy(options.folder, options.lesson)
+    for path in written:
+        print(f"wrote {path}")
+    if options.lesson is None:
+        kept = len([p for p in NOTEBOOKS.iterdir() if p.name not in NOT_FOR_STUDENTS]) - len(written)
+        if kept:
+            print(f"left {kept} as they were; for a fresh lesson beside yours add --lesson and its number")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,118 @@
+"""The course's way of drawing: one style, one colour and line for each method, figures that carry alternative text."""
+
+import base64
+import io
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+from PIL import Image
+
+from hoverslam_lib.integrators import METHODS
+
+STYLE_SHEET = Path(__file__).with_name("hoverslam.mplstyle")
+
+EXACT = {"color": "0.72", "linewidth": 6, "linestyle": "-", "label": "exact"}
+"""The exact solution: a broad grey band on which the others lie or do not."""
+
+_LINES = {
+    "explicit_euler": ("#D55E00", "--"),
+    "symplectic_euler": ("#0072B2", (0, (6, 1.5, 1.5, 1.5))),
+    "implicit_euler": ("#E69F00", (0, (1.2, 1))),
+    "rk4": ("#009E73", "-"),
+    "rkn4": ("#CC79A7", (0, (8, 2))),
+    "gauss4": ("#56B4E9", (0, (3, 1, 1, 1, 1, 1))),
+    "dop8": ("#000000", (0, (1, 2.5))),
+}
+
+
+def use_style():
+    """Draw in the course's style from here on."""
+    plt.style.use(STYLE_SHEET)
+
+
+def line(method, **changes):
+    """Colour, line style and label of a method, the same in every lesson: ``ax.plot(t, h, **line("rk4"))``."""
+    color, linestyle = _LINES[method]
+    return {"color": color, "linestyle": linestyle, "label": METHODS[method].title, **changes}
+
+
+class Picture:
+    """A figure as a PNG with alternative text, which `show` displays.
+
+    It stands in HTML because notebooks carry no alternative text on a plain image; so the text, numbers included, is
+    read out by a screen reader and compared by the tests.
+    """
+
+    def __init__(self, png, alt, width):
+        self.png, self.alt, self.width = png, alt, width
+
+    def __repr__(self):
+        return self.alt
+
+    def _repr_html_(self):
+        data = base64.b64encode(self.png).decode("ascii")
+        alt = self.alt.replace("&", "&amp;").replace('"', "&quot;").replace("<", "&lt;").replace(">", "&gt;")
+        return f'<img alt="{alt}" width="{self.width}" style="max-width:100%" src="data:image/png;base64,{data}">'
+
+
+def show(fig, *, alt):
+    """Show a figure under the cell and close it.
+
+    Parameters
+    ----------
+    fig : matplotlib.figure.Figure
+    alt : str
+        What the figure shows, in words, with its numbers: for those who do not see it, and for the tests.
+
+    Raises
+    ------
+    ValueError
+        If `alt` is empty.
+    """
+    from IPython.display import display
+
+    if not alt.strip():
+        raise ValueError("alt must say what the figure shows")
+    display(Picture(_png(fig), " ".join(alt.split()), round(fig.get_figwidth() * fig.dpi)))
+    plt.close(fig)
+
+
+def _png(fig):
+    """Twice the resolution that is shown, in a palette of 64 colours: sharp on a projector, small in the file."""
+    drawn = io.BytesIO()
+    fig.savefig(drawn, format="png", dpi=2 * fig.dpi)
+    drawn.seek(0)
+    packed = io.BytesIO()
+    Image.open(drawn).convert("RGB").quantize(64, dither=Image.Dither.NONE).save(packed, format="png", optimize=True)
+    return packed.getvalue()
+
+
+def label(ax, x, y, text, *, color, dx=6, dy=0, ha="left"):
+    """Write a name beside a line, at the point (x, y) of the data, moved by (dx, dy) points."""
+    ax.annotate(text, (x, y), (dx, dy), textcoords="offset points", color=color, ha=ha, va="center", fontweight="bold")
+
+
+def moment(ax, t, text, *, color="0.35", top=0.97, side="right"):
+    """Mark a moment with a thin upright line and its name on one side, `top` being the share of the axis' height."""
+    ax.axvline(t, color=color, linewidth=1, linestyle=":")
+    ha, dx = ("left", 4) if side == "right" else ("right", -4)
+    where = {"xycoords": ("data", "axes fraction"), "textcoords": "offset points"}
+    ax.annotate(text, (t, top), (dx, 0), color=color, ha=ha, va="top", **where)
+
+
+def flight(axes, flown, *, color="#009E73", name=None):
+    """Draw height and velocity against time on two axes; what comes after a hover is faint.
+
+    Parameters
+    ----------
+    axes : sequence of two matplotlib Axes
+        For the height [km] and the velocity [m/s].
+    flown : Flight or Trajectory
+    """
+    hover = getattr(flown, "hover", None)
+    end = len(flown.t) if hover is None else int(np.searchsorted(flown.t, hover[0])) + 1
+    for ax, values, name_of_axis in zip(axes, (flown.h / 1e3, flown.v), ("h [km]", "v [m/s]"), strict=True):
+        ax.plot(flown.t[:end], values[:end], color=color, label=name)
+        ax.plot(flown.t[end - 1 :], values[end - 1 :], color=color, alpha=0.3)
+        ax.set(xlabel="t [s]", ylabel=name_of_axis)

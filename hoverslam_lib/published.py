@@ -219,7 +219,7 @@ def oscillator_runs():
     return runs
 
 
-def last_sample_error(exact, approx):
+def listing_2_mape(exact, approx):
     """What Listing 2 prints as MAPE: its loop overwrites its result, so the last sample alone counts, signed, over n.
 
     Parameters

@@ -23,7 +23,10 @@ def number(name, value, unit="", *, above=-math.inf, least=-math.inf, most=math.
         allowed += f" [{unit}]"
     if isinstance(value, bool) or not isinstance(value, Real):
         raise TypeError(f"{name} must be {allowed}; got {value!r} ({type(value).__name__})")
-    result = float(value)
+    try:
+        result = float(value)
+    except OverflowError:
+        result = math.inf
     if not (math.isfinite(result) and result > above and least <= result <= most):
         raise ValueError(f"{name} must be {allowed}; got {value!r}")
     return result
@@ -34,18 +37,24 @@ def state(name, value, unit=""):
     if isinstance(value, Real):
         return number(name, value, unit)
     try:
-        result = np.array(value, dtype=float)
-    except (TypeError, ValueError):
-        raise TypeError(f"{name} must be a number or an array of numbers [{unit}]; got {value!r}") from None
+        result = np.array(value)
+    except ValueError:  # rows of different lengths
+        result = np.array(None)
+    if result.dtype.kind not in "iuf":
+        raise TypeError(f"{name} must be a number or an array of numbers [{unit}]; got {value!r}")
+    result = result.astype(float)
     if not np.all(np.isfinite(result)):
         raise ValueError(f"{name} must be finite everywhere [{unit}]; got {value!r}")
     return result
 
 
-def step_count(steps, dt):
-    """Raise if a run of `steps` steps of `dt` seconds would be longer than MAX_STEPS."""
+def step_count(duration, dt):
+    """Raise if a run of `duration` seconds in steps of `dt` would take more than MAX_STEPS steps."""
+    steps, least = duration / dt, duration / MAX_STEPS
     if steps > MAX_STEPS:
+        unit = 10.0 ** (math.floor(math.log10(least)) - 1)  # of the second digit, to round up to
+        count = f"{steps:,.0f}" if steps < 1e15 else f"{steps:.1e}" if math.isfinite(steps) else "countless"
         raise ValueError(
-            f"dt = {dt:g} s would take {steps:,.0f} steps or more; at most {MAX_STEPS:,} are allowed: "
-            f"use a dt of at least {dt * steps / MAX_STEPS:.1g} s"
+            f"dt = {dt:g} s would take {count} steps or more; at most {MAX_STEPS:,} are allowed: "
+            f"use a dt of at least {math.ceil(least / unit * (1 - 1e-9)) * unit:.2g} s"
         )

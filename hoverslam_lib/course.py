@@ -10,6 +10,7 @@ import re
 import shutil
 import sys
 import time
+from importlib import metadata
 from pathlib import Path
 
 NOTEBOOKS = Path(__file__).resolve().parent.parent / "notebooks"
@@ -141,6 +142,29 @@ def _alternative_texts(html):
     for tag in re.findall(r"<img\b[^>]*>", html):
         alt = re.search(r'\balt="([^"]*)"', tag)
         yield alt.group(1) if alt else ""
+
+
+def environment_problems():
+    """What of environment.txt is missing here or does not fit, as a list of sentences; empty if all is well."""
+    requirements = NOTEBOOKS.parent / "environment.txt"
+    if not requirements.exists():
+        return [f"there is no {requirements}: install the library from a checkout of the course"]
+    found = []
+    for name, low, high in re.findall(r"^([\w-]+)>=([\d.]+),<([\d.]+)$", requirements.read_text("utf-8"), re.MULTILINE):
+        try:
+            version = metadata.version(name)
+        except metadata.PackageNotFoundError:
+            found.append(f"{name} is missing")
+            continue
+        if not _numbers(low) <= _numbers(version) < _numbers(high):
+            found.append(f"{name} {version} is installed; the course needs at least {low} and less than {high}")
+    if found:
+        found.append(f"To mend this, run in {requirements.parent}: {sys.executable} -m pip install -r environment.txt")
+    return found
+
+
+def _numbers(version):
+    return tuple(int(number) for number in re.findall(r"\d+", version))
 
 
 def copy(folder, lesson=None):

@@ -34,4 +34,4 @@ def load(name):
     names = sorted(path.stem for path in FOLDER.glob("*.csv"))
     if name not in names:
         raise ValueError(f"there is no table {name!r}; there are {', '.join(names)}")
-    return pd.read_csv(FOLDER / f"{name}.csv", float_precision="round_trip")
+    return pd.read_csv(FOLDER / f"{name}.csv")

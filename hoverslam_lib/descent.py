@@ -91,10 +91,18 @@ class Descent:
         return v > 0 and v * v * (0.5 - lost) >= self.planet.gravity(h) * (self.planet.radius + h)
 
     def _shortest_fall(self):
-        """A time before which no flight can end on the ground [s]: no air, gravity everywhere as strong as at h = 0."""
-        g = self.planet.gravity(0.0)
-        root = math.sqrt(self.velocity**2 + 2 * g * self.height)
-        return 2 * self.height / (root - self.velocity) if self.velocity < 0 else (self.velocity + root) / g
+        """A time before which no flight can end on the ground [s]: no air, and gravity everywhere as strong as there.
+
+        Of an ascent only the fall from the start on counts, because air can make the rest as short as it likes.
+        """
+        if self._escapes(self.height, self.velocity):
+            return math.inf
+        down = max(-self.velocity, 0.0)
+        return 2 * self.height / (down + math.sqrt(down**2 + 2 * self.planet.gravity(0.0) * self.height))
+
+
+class StepTooLargeError(ValueError):
+    """The numbers overflow within a step."""
 
 
 LANDING_BURN = Descent(FALCON_9_LANDING_BURN, EARTH, height=10e3, velocity=-350.0)
@@ -211,13 +219,17 @@ def fly(descent, t_ignite, *, dt=0.02, method="rk4", controller=None):
     if controller is not None and not callable(controller):
         raise TypeError(f"controller must be a function of (t, h, v, mass); got {controller!r}")
     dt = _validate.number("dt", dt, "s", above=0)
-    at_least = descent._shortest_fall()
-    if t_ignite is not None:
-        at_least = min(at_least, t_ignite + descent.booster.burn_duration)
-    _validate.step_count(at_least / dt, dt)
+    t_coast = math.inf if t_ignite is None else t_ignite
+    at_least = min(descent._shortest_fall(), t_coast + descent.booster.burn_duration)
+    if at_least < math.inf:
+        _validate.step_count(at_least, dt)
     step = step_function(method)
 
-    coasted, landed = coast(descent, math.inf if t_ignite is None else t_ignite, dt=dt, step=step)
+    coasted, end = coast(descent, t_coast, dt=dt, step=step)
+    if end == "space":
+        _, h, v = coasted[-1]
+        raise ValueError(f"the booster never comes down: at h = {h:.0f} m it still climbs at {v:.0f} m/s")
+    landed = end == "ground"
     nodes = [(t, h, v, descent.booster.initial_mass, 0.0) for t, h, v in coasted]
     hover = None
     if not landed:
@@ -239,22 +251,22 @@ def coast(descent, t_end, *, dt, step):
     -------
     nodes : list of tuple
         (t, h, v) [s, m, m/s] at the end of each step, the start first.
-    landed : bool
-        Whether the last of them is the ground.
+    end : str
+        What the last of them is: "time" (t_end), "ground", or "space", from where it never comes down.
     """
     f = descent.acceleration()
     t, h, v = 0.0, float(descent.height), float(descent.velocity)
     nodes = [(t, h, v)]
     for t_next in time_grid(0.0, t_end, dt):
-        if t_end == math.inf and descent._escapes(h, v):
-            raise ValueError(f"the booster never comes down: at h = {h:.0f} m it still climbs at {v:.0f} m/s")
+        if t_end == math.inf and v > 0 and descent._escapes(h, v):
+            return nodes, "space"
         while t < t_next:
             s, h, v, event = advance(step, f, t, h, v, t_next - t)
             t = t_next if event is None else t + s
             nodes.append((t, h, v))
             if event == "ground":
-                return nodes, True
-    return nodes, False
+                return nodes, "ground"
+    return nodes, "time"
 
 
 def _burn(descent, t, h, v, controller, *, dt, step):
@@ -307,7 +319,7 @@ def advance(step, f, t, h, v, dt, *, ground=0.0):
     except OverflowError:
         h_end = v_end = math.inf
     if not math.isfinite(h_end + v_end):
-        raise ValueError(f"the numbers overflow at t = {t:g} s: dt = {dt:g} s is too large for this method")
+        raise StepTooLargeError(f"the numbers overflow at t = {t:g} s: dt = {dt:g} s is too large for this method")
     turns = v < 0 <= v_end or v > 0 >= v_end
     if not turns and h_end > ground:
         return dt, h_end, v_end, None

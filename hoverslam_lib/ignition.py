@@ -2,13 +2,14 @@
 
 import math
 from bisect import bisect_right
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
 from operator import itemgetter
 
 from hoverslam_lib import _validate
 from hoverslam_lib._roots import bracketed_root
-from hoverslam_lib.descent import Descent, advance, coast, fly
+from hoverslam_lib.descent import Descent, StepTooLargeError, advance, coast, fly
 from hoverslam_lib.integrators import dop8, rk4, step_function
 from hoverslam_lib.trajectory import time_grid
 
@@ -27,8 +28,11 @@ class NoSoftLanding(ValueError):
     """
 
     def __init__(self, reason, amount, message):
-        super().__init__(message)
+        super().__init__(reason, amount, message)
         self.reason, self.amount = reason, amount
+
+    def __str__(self):
+        return self.args[2]
 
 
 @dataclass(frozen=True)
@@ -80,13 +84,19 @@ def hover_height(descent, t_ignite, *, dt=0.02, method="rk4"):
     NoSoftLanding
         If thrust does not exceed the dry weight.
     """
+    _require_descent(descent)
     dt = _validate.number("dt", dt, "s", above=0)
     t_ignite = _validate.number("t_ignite", t_ignite, "s", least=0)
-    _validate.step_count(min(t_ignite, descent._shortest_fall()) / dt, dt)
+    _validate.step_count(min(t_ignite, descent._shortest_fall()), dt)
     step = step_function(method)
     _require_thrust(descent)
-    nodes, landed = coast(descent, t_ignite, dt=dt, step=step)
-    return math.nan if landed else _stop(descent, *nodes[-1], dt=dt, step=step)[1]
+    nodes, end = coast(descent, t_ignite, dt=dt, step=step)
+    if end == "ground":
+        return math.nan
+    t, h, v = nodes[-1]
+    hardest = (descent.booster.thrust + abs(descent.drag(h, v))) / descent.booster.dry_mass
+    _validate.step_count(abs(v) / hardest, dt)
+    return _stop(descent, t, h, v, dt=dt, step=step)[1]
 
 
 def best_ignition(descent):
@@ -109,21 +119,22 @@ def best_ignition(descent):
     NoSoftLanding
         With its reason and by how much.
     """
-    if not isinstance(descent, Descent):
-        raise TypeError(f"descent must be a Descent; got {descent!r}")
+    _require_descent(descent)
     _require_thrust(descent)
-    _require_return(descent)
-    dt = _first_dt(descent)
-    found = _solve(descent, dt / 2, rk4)  # a first look
-    found = _solve(descent, dt, dop8, near=found.t_ignite)
-    for _ in range(12):
-        dt /= 2
-        before, found = found, _solve(descent, dt, dop8, near=found.t_ignite)
+    found = None
+    for n in range(-1, 14):
+        before = found
+        try:
+            found = _solve(descent, rk4, 0.5) if n < 0 else _solve(descent, dop8, 0.5**n, near=before)
+        except (NoSoftLanding, StepTooLargeError):
+            if n < 1:  # look more closely before believing it
+                continue
+            raise
         # order 8: the error left is some hundred times smaller than this change
-        if abs(found.t_ignite - before.t_ignite) <= 1e-10 * found.t_touchdown:
+        if n > 0 and before and abs(found.t_ignite - before.t_ignite) <= 1e-10 * found.t_touchdown:
             break
     else:
-        raise ArithmeticError(f"the ignition time did not settle down to dt = {dt:g} s")
+        raise ArithmeticError("the ignition time does not settle down, however small the steps are made")
 
     if found.propellant_left < -1e-9 * descent.booster.propellant_mass:
         missing = -found.propellant_left
@@ -160,19 +171,25 @@ def ignition_table(t_ignite, *, dt, methods=("rk4", "symplectic_euler"), descent
     import pandas as pd
 
     descent = Descent() if descent is None else descent
-    times = [_validate.number("t_ignite", t, "s", least=0) for t in t_ignite]
+    if not isinstance(t_ignite, Iterable) or isinstance(t_ignite, str):
+        raise TypeError(f"t_ignite must be a collection of ignition times [s]; got {t_ignite!r}")
+    times, methods = list(t_ignite), list(methods)
     rows = []
     for t in times:
-        row = {}
+        row = []
         for method in methods:
             flight = fly(descent, t, dt=dt, method=method)
-            row[method, "hover height [m]"] = hover_height(descent, t, dt=dt, method=method)
-            row[method, "touchdown velocity [m/s]"] = flight.touchdown[1] if flight.touchdown else math.nan
-            row[method, "outcome"] = flight.outcome
+            v_touchdown = flight.touchdown[1] if flight.touchdown else math.nan
+            row += [hover_height(descent, t, dt=dt, method=method), v_touchdown, flight.outcome]
         rows.append(row)
-    table = pd.DataFrame(rows, index=pd.Index(times, name="t_ignite [s]"))
-    table.columns = pd.MultiIndex.from_tuples(table.columns)
-    return table
+    quantities = ["hover height [m]", "touchdown velocity [m/s]", "outcome"]
+    columns = pd.MultiIndex.from_product([methods, quantities])
+    return pd.DataFrame(rows, index=pd.Index(times, name="t_ignite [s]"), columns=columns)
+
+
+def _require_descent(descent):
+    if not isinstance(descent, Descent):
+        raise TypeError(f"descent must be a Descent; got {descent!r}")
 
 
 def _require_thrust(descent):
@@ -186,23 +203,32 @@ def _require_thrust(descent):
         )
 
 
-def _require_return(descent):
-    h, v = descent.height, descent.velocity
-    if descent._escapes(h, v):
-        excess = v - math.sqrt(2 * descent.planet.gravity(h) * (descent.planet.radius + h))
-        raise NoSoftLanding("never comes down", excess, f"the booster never comes down: {excess:.1f} m/s above escape")
-
-
 def _first_dt(descent):
-    """A step to begin with: a small part of the flight, and of the time in which the air changes."""
-    fastest = math.sqrt(descent.velocity**2 + 2 * descent.planet.gravity(0.0) * descent.height)
-    return min(descent._shortest_fall() / 24, descent.planet.scale_height / fastest)
+    """A step of the fall to begin with [s]: a small part of it, and of the time in which the air changes."""
+    g, v = descent.planet.gravity(0.0), descent.velocity
+    fastest = math.sqrt(v**2 + 2 * g * descent.height)
+    fall = 2 * descent.height / (fastest - v) if v < 0 else (v + fastest) / g
+    return min(fall / 24, descent.planet.scale_height / fastest) if descent.planet.surface_density else fall / 24
 
 
-def _solve(descent, dt, step, near=None):
-    """The optimum as one method with one dt sees it."""
-    nodes, _ = coast(descent, math.inf, dt=dt, step=step)
-    end = nodes[-1][0]
+def _first_dt_of_burn(descent, h, v):
+    """The same for a burn from (h, v), which may be much shorter or longer than the fall before it."""
+    braking = descent.acceleration(throttle=1.0)(0.0, h, 0.0)
+    if not v < 0 < braking:
+        return _first_dt(descent)
+    air = descent.planet.scale_height / -v if descent.planet.surface_density else math.inf
+    return min(-v / braking / 4, air)
+
+
+def _solve(descent, step, fraction, near=None):
+    """The optimum as a method sees it with a fraction of the first step."""
+    dt = fraction * _first_dt(descent)
+    nodes, end = coast(descent, math.inf, dt=dt, step=step)
+    t_end = nodes[-1][0]
+    if end == "space":
+        h = descent.height
+        excess = descent.velocity - math.sqrt(2 * descent.planet.gravity(h) * (descent.planet.radius + h))
+        raise NoSoftLanding("never comes down", excess, f"the booster never comes down: {excess:.1f} m/s above escape")
     f = descent.acceleration()
 
     @cache
@@ -210,18 +236,18 @@ def _solve(descent, dt, step, near=None):
         """State at ignition, with one partial step from the stored fall, and where a burn from there stops."""
         t, h, v = nodes[bisect_right(nodes, t_ignite, key=itemgetter(0)) - 1]
         h, v = step(f, t, h, v, t_ignite - t)
-        return h, v, *_stop(descent, t_ignite, h, v, dt=dt, step=step)
+        return h, v, *_stop(descent, t_ignite, h, v, dt=fraction * _first_dt_of_burn(descent, h, v), step=step)
 
     def missed_by(t_ignite):
         return lit(t_ignite)[-1]
 
     bracket = None
     if near is not None:
-        low, high = max(near - 1e-5 * end, 0.0), min(near + 1e-5 * end, end)
+        low, high = max(near.t_ignite - 1e-5 * t_end, 0.0), min(near.t_ignite + 1e-5 * t_end, t_end)
         bracket = low, high, missed_by(low), missed_by(high)
     if bracket is None or not bracket[2] >= 0 >= bracket[3]:
         bracket = _bracket(missed_by, nodes)
-    t_ignite = bracketed_root(missed_by, *bracket, xtol=1e-13 * end)
+    t_ignite = bracketed_root(missed_by, *bracket, xtol=1e-13 * t_end)
     h, v, t_touchdown, _ = lit(t_ignite)
     left = descent.booster.propellant_mass - descent.booster.burn_rate * (t_touchdown - t_ignite)
     return Ignition(t_ignite, h, v, t_touchdown, left)
@@ -230,8 +256,9 @@ def _solve(descent, dt, step, near=None):
 def _bracket(missed_by, nodes):
     """Two ignition times between which the hover height changes sign, and the hover heights there."""
     high, g_high = nodes[-1][0], missed_by(nodes[-1][0])
-    falling = next(i for i, (_, _, v) in enumerate(nodes) if v <= 0)
-    for t, _, _ in nodes[falling::-1]:  # from the top of the flight, back through the ascent if there is one
+    top = next(i for i, (_, _, v) in enumerate(nodes) if v <= 0)
+    for i in sorted({top * k // 8 for k in range(9)}, reverse=True):  # back from the top, through an ascent if any
+        t = nodes[i][0]
         g = missed_by(t)
         if g >= 0:
             return t, high, g, g_high

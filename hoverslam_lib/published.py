@@ -44,7 +44,10 @@ def acceleration(t_ignite, faults=ALL_FAULTS):
     ValueError
         If something in `faults` is not a `Fault`.
     """
-    faults = frozenset(faults)
+    try:
+        faults = frozenset(faults)
+    except TypeError:
+        raise TypeError(f"faults must be a collection of Fault; got {faults!r}") from None
     if not faults <= ALL_FAULTS:
         raise ValueError(
             f"faults must be members of Fault: {', '.join(Fault.__members__)}; got {set(faults - ALL_FAULTS)}"
@@ -91,7 +94,7 @@ def fly(t_ignite, *, dt, method="rkn4", faults=ALL_FAULTS):
         numbers.
     """
     dt = _validate.number("dt", dt, "s", above=0)
-    _validate.step_count(TIME_CAP / dt, dt)
+    _validate.step_count(TIME_CAP, dt)
     f, step = acceleration(t_ignite, faults), step_function(method)
     start = Descent()
     t, h, v = 0.0, start.height, start.velocity

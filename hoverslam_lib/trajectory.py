@@ -1,6 +1,5 @@
 """A run of a one-step method over an interval of time."""
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -45,11 +44,11 @@ def time_grid(t0, t_end, dt):
     A remainder below a billionth of a step is rounding and makes no step of its own. t_end may be infinite; after
     ten million steps the grid raises ValueError.
     """
-    steps = math.inf if t_end == math.inf else math.ceil((t_end - t0) / dt - 1e-9)
+    steps = (t_end - t0) / dt - 1e-9
     i = 1
     while i < steps:
         if i > _validate.MAX_STEPS:
-            _validate.step_count(i, dt)
+            _validate.step_count(i * dt, dt)
         yield t0 + i * dt
         i += 1
     if t_end > t0:
@@ -85,11 +84,16 @@ def integrate(f, h0, v0, *, dt, t_end, t0=0.0, method="rk4"):
     dt = _validate.number("dt", dt, "s", above=0)
     t = t0 = _validate.number("t0", t0, "s")
     t_end = _validate.number("t_end", t_end, "s", least=t0)
-    _validate.step_count((t_end - t0) / dt, dt)
+    _validate.step_count(t_end - t0, dt)
     step = step_function(method)
     h, v = _validate.state("h0", h0, "m"), _validate.state("v0", v0, "m/s")
     if np.shape(h) != np.shape(v):
-        h, v = (x.copy() for x in np.broadcast_arrays(h, v))
+        try:
+            h, v = (x.copy() for x in np.broadcast_arrays(h, v))
+        except ValueError:
+            raise ValueError(
+                f"h0 and v0 do not go together: their shapes are {np.shape(h)} and {np.shape(v)}"
+            ) from None
 
     ts, hs, vs = [t], [h], [v]
     for t_next in time_grid(t0, t_end, dt):

@@ -8,6 +8,7 @@ alone; with ``--lesson 03`` a fresh copy of that lesson beside the edited one.
 import argparse
 import re
 import shutil
+import statistics
 import sys
 import time
 from importlib import metadata
@@ -239,11 +240,23 @@ def _refresh_all(names):
             found = refresh(path)
         except CellExecutionError as error:
             found = [f"a cell raises, and the file is left as it was:\n{error}"]
-        print(f"{time.perf_counter() - start:.0f} s", "ok" if not found else "")
+        print(f"{time.perf_counter() - start:.0f} s;", _size(path), "" if found else "; ok")
         for problem in found:
             print(f"    {problem}")
         failed += bool(found)
     return 1 if failed else 0
+
+
+def _size(path):
+    """For the author's eye: how long the cells are, and how much of the page is text."""
+    import nbformat
+
+    cells = nbformat.read(path, as_version=4).cells
+    code = [cell.source for cell in cells if cell.cell_type == "code"]
+    text = sum(len(cell.source.split()) for cell in cells if cell.cell_type == "markdown")
+    lines = [sum(bool(line.strip()) for line in source.splitlines()) for source in code]
+    share = text / sum(len(source.split()) for source in code)
+    return f"{len(code)} code cells of median {statistics.median(lines):.0f} lines, {share:.1f} words of text to one of code"
 
 
 def _copy_all(options):

@@ -256,7 +256,8 @@ def _size(path):
     text = sum(len(cell.source.split()) for cell in cells if cell.cell_type == "markdown")
     lines = [sum(bool(line.strip()) for line in source.splitlines()) for source in code]
     share = text / sum(len(source.split()) for source in code)
-    return f"{len(code)} code cells of median {statistics.median(lines):.0f} lines, {share:.1f} words of text to one of code"
+    median = statistics.median(lines)
+    return f"{len(code)} code cells, median {median:.0f} lines; {share:.1f} words of text to one of code"
 
 
 def _copy_all(options):

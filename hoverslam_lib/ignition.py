@@ -126,7 +126,7 @@ def best_ignition(descent):
         before = found
         try:
             found = _solve(descent, rk4, 0.5) if n < 0 else _solve(descent, dop8, 0.5**n, near=before)
-        except StepTooLargeError:
+        except (StepTooLargeError, OverflowError):
             continue
         except NoSoftLanding:
             if n < 1:  # look more closely before believing it

@@ -326,10 +326,10 @@ def test_of_several_hovers_the_first_is_reported():
 
 
 def test_a_step_is_not_split_by_rounding():
-    # 0.1 + 0.2 is a few units in the last place above 3 steps of 0.1
-    flight = fly(PAPER, 0.1 + 0.2, dt=0.1)
-    assert np.count_nonzero(flight.t <= 0.1 + 0.2) == 4
-    assert np.min(np.diff(flight.t[:4])) > 0.05
+    t_ignite = math.nextafter(3 * 0.1, 1.0)  # one unit in the last place after the third step
+    flight = fly(PAPER, t_ignite, dt=0.1)
+    assert flight.t[3] == t_ignite
+    assert np.count_nonzero(flight.t <= t_ignite) == 4
 
 
 @pytest.mark.parametrize(("descent", "t_ignite"), [(ASCENDING, None), (ASCENDING, 30.123), (ASCENDING_WEAK, 4.7)])

@@ -50,12 +50,13 @@ def test_lesson_has_its_parts(path):
 
 @pytest.mark.parametrize("path", LESSONS, ids=lambda path: path.stem)
 def test_no_line_of_a_formula_or_sentence_is_taken_for_a_list(path):
-    """Markdown makes a list item of a line that begins with a plus or minus, even within a sentence."""
+    """Markdown makes a list item of a line that begins with a plus or minus, and a quotation of one with a >."""
     for cell in nbformat.read(path, as_version=4).cells:
         if cell.cell_type == "markdown":
             text = re.sub(r"\$\$.*?\$\$", "", cell.source, flags=re.DOTALL)
             lines = text.split("\n")
             for before, line in zip(lines, lines[1:], strict=False):
+                assert not re.match(r" {0,3}>", line), line
                 if re.match(r" {0,3}[-+*] ", line) and before.strip():
                     assert re.match(r"\s*([-+*]|\d+\.) |  ", before), line
 

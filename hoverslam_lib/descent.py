@@ -73,10 +73,13 @@ class Descent:
         # this is where a flight spends its time: drag is written out, and what does not change is looked up once
         drag_area, density, gravity = self._drag_area, self.planet.air_density, self.planet.gravity
 
-        def f(t, h, v):
+        def coasting(t, h, v):
+            return -drag_area * density(h) * abs(v) * v / mass - gravity(h)
+
+        def burning(t, h, v):
             return (thrust - drag_area * density(h) * abs(v) * v) / (mass - rate * (t - since)) - gravity(h)
 
-        return f
+        return burning if throttle else coasting
 
     @cached_property
     def _drag_area(self):
@@ -258,7 +261,7 @@ def coast(descent, t_end, *, dt, step):
     t, h, v = 0.0, float(descent.height), float(descent.velocity)
     nodes = [(t, h, v)]
     for t_next in time_grid(0.0, t_end, dt):
-        if t_end == math.inf and v > 0 and descent._escapes(h, v):
+        if v > 0 and t_end == math.inf and descent._escapes(h, v):
             return nodes, "space"
         while t < t_next:
             s, h, v, event = advance(step, f, t, h, v, t_next - t)
@@ -318,7 +321,7 @@ def advance(step, f, t, h, v, dt, *, ground=0.0):
         h_end, v_end = step(f, t, h, v, dt)
     except OverflowError:
         h_end = v_end = math.inf
-    if not math.isfinite(h_end + v_end):
+    if not -math.inf < h_end + v_end < math.inf:
         raise StepTooLargeError(f"the numbers overflow at t = {t:g} s: dt = {dt:g} s is too large for this method")
     turns = v < 0 <= v_end or v > 0 >= v_end
     if not turns and h_end > ground:

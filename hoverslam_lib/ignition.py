@@ -122,18 +122,18 @@ def best_ignition(descent):
     _require_descent(descent)
     _require_thrust(descent)
     found = None
-    for n in range(-1, 14):
+    for n in range(14):
         before = found
         try:
-            found = _solve(descent, rk4, 0.5) if n < 0 else _solve(descent, dop8, 0.5**n, near=before)
+            found = _solve(descent, rk4, 0.5) if n == 0 else _solve(descent, dop8, 0.5**n, near=before)
         except (StepTooLargeError, OverflowError):
             continue
         except NoSoftLanding:
-            if n < 1:  # look more closely before believing it
+            if n < 2:  # look more closely before believing it
                 continue
             raise
         # order 8: the error left is some hundred times smaller than this change
-        if n > 0 and before and abs(found.t_ignite - before.t_ignite) <= 1e-10 * found.t_touchdown:
+        if n > 1 and before and abs(found.t_ignite - before.t_ignite) <= 1e-10 * found.t_touchdown:
             break
     else:
         raise ArithmeticError("the ignition time does not settle down, however small the steps are made")
@@ -219,7 +219,9 @@ def _first_dt_of_burn(descent, h, v):
     if not v < 0 < braking:
         return _first_dt(descent)
     air = descent.planet.scale_height / -v if descent.planet.surface_density else math.inf
-    return min(-v / braking / 4, air)
+    drag = descent.drag(h, v)  # alone it would stop the booster within some m·v/drag
+    damping = -descent.booster.initial_mass * v / drag if drag else math.inf
+    return min(-v / braking / 4, air, damping)
 
 
 def _solve(descent, step, fraction, near=None):
@@ -249,7 +251,7 @@ def _solve(descent, step, fraction, near=None):
         bracket = low, high, missed_by(low), missed_by(high)
     if bracket is None or not bracket[2] >= 0 >= bracket[3]:
         bracket = _bracket(missed_by, nodes)
-    t_ignite = bracketed_root(missed_by, *bracket, xtol=1e-13 * t_end)
+    t_ignite = bracketed_root(missed_by, *bracket, xtol=(1e-6 if near is None else 1e-12) * t_end)
     h, v, t_touchdown, _ = lit(t_ignite)
     left = descent.booster.propellant_mass - descent.booster.burn_rate * (t_touchdown - t_ignite)
     return Ignition(t_ignite, h, v, t_touchdown, left)

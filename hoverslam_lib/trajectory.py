@@ -44,10 +44,10 @@ def time_grid(t0, t_end, dt):
     A remainder below a billionth of a step is rounding and makes no step of its own. t_end may be infinite; after
     ten million steps the grid raises ValueError.
     """
-    steps = (t_end - t0) / dt - 1e-9
+    steps, most = (t_end - t0) / dt - 1e-9, _validate.MAX_STEPS
     i = 1
     while i < steps:
-        if i > _validate.MAX_STEPS:
+        if i > most:
             _validate.step_count(i * dt, dt)
         yield t0 + i * dt
         i += 1

@@ -5,17 +5,20 @@ what moves where it belongs at the time t [s] and returns those artists. The sam
 """
 
 import struct
+import sys
 from dataclasses import dataclass, replace
 
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
-from matplotlib.path import Path
+from matplotlib.path import Path as Outline
 from PIL import GifImagePlugin, Image
 
 from hoverslam_lib import _validate
-from hoverslam_lib.plotting import Picture
+from hoverslam_lib.descent import Descent, fly
+from hoverslam_lib.ignition import best_ignition
+from hoverslam_lib.plotting import Picture, use_style
 
 COLOURS = 16
 """Colours of a film, shared by all its frames."""
@@ -24,8 +27,8 @@ FREE_FALL = 9.81
 """One g [m/s²]."""
 
 # outlines around the point between the feet; every one reaches to 1, because matplotlib scales markers by that
-_BODY = Path([(-0.07, 0.12), (-0.07, 0.95), (0, 1), (0.07, 0.95), (0.07, 0.12), (-0.07, 0.12)])
-_LEGS = Path(
+_BODY = Outline([(-0.07, 0.12), (-0.07, 0.95), (0, 1), (0.07, 0.95), (0.07, 0.12), (-0.07, 0.12)])
+_LEGS = Outline(
     [(-0.2, 0), (-0.06, 0.34), (-0.06, 0.2), (-0.2, 0), (0.2, 0), (0.06, 0.34), (0.06, 0.2), (0.2, 0), (0, 1)],
     [1, 2, 2, 2, 1, 2, 2, 2, 1],
 )
@@ -33,7 +36,7 @@ _LEGS = Path(
 
 def _plume(throttle):
     tip = 0.12 - 0.8 * throttle
-    return Path([(-0.06, 0.12), (0.06, 0.12), (0, tip), (-0.06, 0.12), (0, 1)], [1, 2, 2, 2, 1])
+    return Outline([(-0.06, 0.12), (0.06, 0.12), (0, tip), (-0.06, 0.12), (0, 1)], [1, 2, 2, 2, 1])
 
 
 @dataclass(frozen=True, repr=False)
@@ -63,8 +66,7 @@ class Animation:
         return self.alt
 
     def _repr_html_(self):
-        html = Picture(self.gif, self.alt, self.width)._repr_html_()
-        return html.replace('src="data:image/png;', 'src="data:image/gif;')
+        return Picture(self.gif, self.alt, self.width, kind="gif")._repr_html_()
 
 
 def film(fig, move, times, *, alt, duration=40, hold=2000):
@@ -376,6 +378,19 @@ def landing_film(flight, times, *, alt, duration=40, hold=2000):
     return film(fig, move, times, alt=alt, duration=duration, hold=hold)
 
 
+def whole_burn():
+    """Make the film of the README: the paper's booster from 2 s before the best ignition on, at double speed."""
+    descent = Descent()
+    best = best_ignition(descent)
+    flight = fly(descent, best.t_ignite)
+    times = np.arange(flight.t[-1], best.t_ignite - 2, -0.16)[::-1]
+    alt = (
+        f"A booster falls towards the ground at {-best.v_ignite:.0f} m/s, lights its engines "
+        f"{best.h_ignite / 1e3:.1f} km above it and stops on it {flight.t[-1] - best.t_ignite:.1f} s later"
+    )
+    return landing_film(flight, times, alt=alt, duration=80)
+
+
 def landing_stills(flight, times, *, top=None):
     """Return a figure with the booster at a few times side by side, for `plotting.show`.
 
@@ -414,3 +429,9 @@ def _hundredths(name, duration):
     if milliseconds % 10:
         raise ValueError(f"{name} must be a whole number of hundredths of a second, as in a GIF; got {duration!r} ms")
     return int(milliseconds)
+
+
+if __name__ == "__main__":  # python -m hoverslam_lib.animation notebooks/images/landing.gif
+    use_style()
+    with open(sys.argv[1], "wb") as file:
+        file.write(whole_burn().gif)

@@ -2,7 +2,8 @@
 
 ``python -m hoverslam_lib.course refresh [LESSON…]`` executes lessons from top to bottom in a fresh kernel, cleans and
 checks what they store. ``python -m hoverslam_lib.course copy FOLDER`` makes a student's working copy that git leaves
-alone; with ``--lesson 03`` a fresh copy of that lesson beside the edited one.
+alone; with ``--lesson 03`` a fresh copy of that lesson beside the edited one. ``python -m hoverslam_lib.course print
+FOLDER [LESSON…]`` writes pages to print or to read without a network.
 """
 
 import argparse
@@ -211,6 +212,39 @@ def _copy_beside(source, folder):
     return Path(shutil.copy(source, target))
 
 
+def page(path):
+    """A stored notebook as one HTML page without scripts or outside files: formulas are MathML, pictures are inside.
+
+    Parameters
+    ----------
+    path : Path
+
+    Returns
+    -------
+    str
+    """
+    import nbformat
+    from latex2mathml.converter import convert
+    from nbconvert import HTMLExporter
+
+    formulas = []
+
+    def set_aside(formula):
+        display, inline = formula.groups()
+        formulas.append(convert((display or inline).strip(), display="block" if display else "inline"))
+        return f"formula-{len(formulas) - 1}-"
+
+    notebook = nbformat.read(path, as_version=4)
+    for cell in notebook.cells:
+        if cell.cell_type == "markdown":  # the exporter would take the tags of MathML apart
+            cell.source = re.sub(r"\$\$(.+?)\$\$|\$(.+?)\$", set_aside, cell.source, flags=re.DOTALL)
+            cell.source = re.sub(r"\]\((\w+)\.ipynb", r"](\1.html", cell.source)
+    resources = {"metadata": {"name": path.stem, "path": str(path.parent)}}
+    html, _ = HTMLExporter(embed_images=True, template_name="lab").from_notebook_node(notebook, resources)
+    html = re.sub(r"<script\b.*?</script>", "", html, flags=re.DOTALL)
+    return re.sub(r"formula-(\d+)-", lambda place: formulas[int(place.group(1))], html)
+
+
 def main(arguments=None):
     """Command line: see the module's docstring. Returns the exit code."""
     parser = argparse.ArgumentParser(prog="python -m hoverslam_lib.course", description="The life of a notebook.")
@@ -220,9 +254,14 @@ def main(arguments=None):
     copying = commands.add_parser("copy", help="make a working copy that git leaves alone")
     copying.add_argument("folder")
     copying.add_argument("--lesson", help="number or name: a fresh copy of this lesson beside the edited one")
+    printing = commands.add_parser("print", help="write lessons as pages to print or to read without a network")
+    printing.add_argument("folder")
+    printing.add_argument("lesson", nargs="*", help="number or name; all lessons if left out")
     options = parser.parse_args(arguments)
     try:
-        return _refresh_all(options.lesson) if options.command == "refresh" else _copy_all(options)
+        if options.command == "refresh":
+            return _refresh_all(options.lesson)
+        return _copy_all(options) if options.command == "copy" else _print_all(options)
     except ValueError as error:
         print(error, file=sys.stderr)
         return 2
@@ -258,6 +297,17 @@ def _size(path):
     share = text / sum(len(source.split()) for source in code)
     median = statistics.median(lines)
     return f"{len(code)} code cells, median {median:.0f} lines; {share:.1f} words of text to one of code"
+
+
+def _print_all(options):
+    folder = Path(options.folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    paths = lessons(options.lesson)
+    for n, path in enumerate(paths, start=1):
+        target = folder / f"{path.stem}.html"
+        target.write_text(page(path), encoding="utf-8")
+        print(f"[{n}/{len(paths)}] wrote {target}")
+    return 0
 
 
 def _copy_all(options):

@@ -38,22 +38,22 @@ def line(method, **changes):
 
 
 class Picture:
-    """A figure as a PNG with alternative text, which `show` displays.
+    """A figure as a PNG, or a film as a GIF, with alternative text, which `show` displays.
 
     It stands in HTML because notebooks carry no alternative text on a plain image; so the text, numbers included, is
     read out by a screen reader and compared by the tests.
     """
 
-    def __init__(self, png, alt, width):
-        self.png, self.alt, self.width = png, alt, width
+    def __init__(self, data, alt, width, kind="png"):
+        self.data, self.alt, self.width, self.kind = data, alt, width, kind
 
     def __repr__(self):
         return self.alt
 
     def _repr_html_(self):
-        data = base64.b64encode(self.png).decode("ascii")
+        src = f"data:image/{self.kind};base64,{base64.b64encode(self.data).decode('ascii')}"
         alt = self.alt.replace("&", "&amp;").replace('"', "&quot;").replace("<", "&lt;").replace(">", "&gt;")
-        return f'<img alt="{alt}" width="{self.width}" style="max-width:100%" src="data:image/png;base64,{data}">'
+        return f'<img alt="{alt}" width="{self.width}" style="max-width:100%" src="{src}">'
 
 
 def show(fig, *, alt):

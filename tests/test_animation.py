@@ -10,7 +10,7 @@ import pytest
 from matplotlib.figure import Figure
 from PIL import Image
 
-from hoverslam_lib import Descent, animation, best_ignition, fly
+from hoverslam_lib import Descent, animation, best_ignition, fly, plotting
 
 BODY = np.array([0x00, 0x72, 0xB2])
 
@@ -251,3 +251,14 @@ def test_bad_input_is_refused(landed, times, changes, message):
 def test_times_must_be_numbers(landed):
     with pytest.raises(TypeError, match="times must be numbers"):
         animation.resample(landed, ["soon"])
+
+
+def test_film_of_the_readme_is_the_one_that_the_library_makes():
+    root = Path(__file__).parent.parent
+    with plt.style.context(plotting.STYLE_SHEET):
+        made = animation.whole_burn()
+    stored = (root / "notebooks" / "images" / "landing.gif").read_bytes()
+    assert len(stored) < 100_000
+    frames = zip(decoded(stored), decoded(made.gif), strict=True)
+    assert all(ms == other and np.mean(np.abs(a - b)) < 2 for (a, ms), (b, other) in frames)
+    assert f'alt="{made.alt}"' in (root / "README.md").read_text(encoding="utf-8")

@@ -1,5 +1,7 @@
 """Refreshing and copying notebooks."""
 
+import re
+
 import nbformat
 import pytest
 
@@ -90,3 +92,29 @@ def test_copy_overwrites_nothing_and_puts_a_fresh_lesson_beside_the_edited_one(f
         course.main(["copy", str(target), "--lesson", "01"])
         assert (target / expected).read_bytes() == (folder / "01_first.ipynb").read_bytes()
     assert edited.read_text() == "my work"
+
+
+def test_printed_page_needs_no_network_and_no_script(folder, tmp_path, capsys):
+    path = folder / "01_first.ipynb"
+    lesson = nbformat.read(path, as_version=4)
+    text = r"half is $\frac{1}{2}$ and $$a^2 = b_n$$ [next](02_second.ipynb) ![3](images/picture.png)"
+    lesson.cells.append(nbformat.v4.new_markdown_cell(text))
+    nbformat.write(lesson, path)
+    course.refresh(path)
+    assert course.main(["print", str(tmp_path / "pages"), "01"]) == 0
+    page = (tmp_path / "pages" / "01_first.html").read_text(encoding="utf-8")
+    assert page.count("<math ") == 2
+    assert "<mfrac><mrow><mn>1</mn></mrow><mrow><mn>2</mn></mrow></mfrac>" in page
+    assert 'display="block"' in page
+    assert 'href="02_second.html"' in page
+    assert 'alt="a line to 1"' in page
+    assert "<script" not in page
+    assert not re.search(r'(?:src|href)="(?!data:|#|02_second)', page)
+    assert "1/1" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("path", course.lessons(), ids=lambda path: path.stem)
+def test_every_formula_of_the_course_can_be_printed(path):
+    page = course.page(path)
+    assert not re.search(r"formula-\d|\$[^<$\n]*\\[a-z]+[^<$\n]*\$|<mtext>\\|<mi>\\", page)
+    assert not re.search(r'<(?:link|script|img)\b[^>]*(?:src|href)="https?:', page)

@@ -33,7 +33,7 @@ def test_picture_carries_its_text_at_twice_the_resolution_shown(shown):
     html = shown[0]._repr_html_()
     assert 'alt="v &lt; 3 &amp; &quot;h&quot; = 2.6 m"' in html
     assert 'width="500"' in html
-    image = Image.open(io.BytesIO(shown[0].png))
+    image = Image.open(io.BytesIO(shown[0].data))
     assert image.size == (1000, 600)
     assert image.mode == "P"
     assert image.convert("RGB").getpixel((0, 0)) == (255, 255, 255)

@@ -2,7 +2,7 @@
 
 from hoverslam_lib.booster import FALCON_9, FALCON_9_LANDING_BURN, Booster
 from hoverslam_lib.descent import LANDING_BURN, Descent, Flight, fly
-from hoverslam_lib.ignition import Ignition, NoSoftLanding, best_ignition, hover_height, ignition_table
+from hoverslam_lib.ignition import FreeFall, Ignition, NoSoftLanding, best_ignition, hover_height, ignition_table
 from hoverslam_lib.integrators import METHODS, Method
 from hoverslam_lib.metrics import mape, max_error, nmae, observed_order, rmse
 from hoverslam_lib.oscillator import Oscillator
@@ -20,6 +20,7 @@ __all__ = [
     "Booster",
     "Descent",
     "Flight",
+    "FreeFall",
     "Ignition",
     "Method",
     "NoSoftLanding",

@@ -219,19 +219,23 @@ def fly(descent, t_ignite, *, dt=0.02, method="rk4", controller=None):
         raise TypeError(f"descent must be a Descent; got {descent!r}")
     if t_ignite is not None:
         t_ignite = _validate.number("t_ignite", t_ignite, "s", least=0)
-    if controller is not None and not callable(controller):
-        raise TypeError(f"controller must be a function of (t, h, v, mass); got {controller!r}")
     dt = _validate.number("dt", dt, "s", above=0)
     t_coast = math.inf if t_ignite is None else t_ignite
     at_least = min(descent._shortest_fall(), t_coast + descent.booster.burn_duration)
     if at_least < math.inf:
         _validate.step_count(at_least, dt)
     step = step_function(method)
-
     coasted, end = coast(descent, t_coast, dt=dt, step=step)
     if end == "space":
         _, h, v = coasted[-1]
         raise ValueError(f"the booster never comes down: at h = {h:.0f} m it still climbs at {v:.0f} m/s")
+    return finish(descent, t_ignite, coasted, end, controller, dt=dt, step=step)
+
+
+def finish(descent, t_ignite, coasted, end, controller=None, *, dt, step):
+    """Return the Flight that begins with what `coast` returned; see `fly` for the rest."""
+    if controller is not None and not callable(controller):
+        raise TypeError(f"controller must be a function of (t, h, v, mass); got {controller!r}")
     landed = end == "ground"
     nodes = [(t, h, v, descent.booster.initial_mass, 0.0) for t, h, v in coasted]
     hover = None
@@ -247,8 +251,8 @@ def fly(descent, t_ignite, *, dt=0.02, method="rk4", controller=None):
     return Flight(descent, t_ignite, t, h, v, mass, throttle, outcome, touchdown, hover)
 
 
-def coast(descent, t_end, *, dt, step):
-    """Fall freely to t_end or to the ground, whichever comes first.
+def coast(descent, t_end, *, dt, step, start=None):
+    """Fall freely to t_end or to the ground, whichever comes first; `start` is a node to begin at.
 
     Returns
     -------
@@ -258,9 +262,9 @@ def coast(descent, t_end, *, dt, step):
         What the last of them is: "time" (t_end), "ground", or "space", from where it never comes down.
     """
     f = descent.acceleration()
-    t, h, v = 0.0, float(descent.height), float(descent.velocity)
+    t, h, v = start or (0.0, float(descent.height), float(descent.velocity))
     nodes = [(t, h, v)]
-    for t_next in time_grid(0.0, t_end, dt):
+    for t_next in time_grid(t, t_end, dt):
         if v > 0 and t_end == math.inf and descent._escapes(h, v):
             return nodes, "space"
         while t < t_next:

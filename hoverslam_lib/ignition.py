@@ -1,7 +1,7 @@
 """When to ignite: the optimum of the equation, and tables of what other times lead to."""
 
 import math
-from bisect import bisect_right
+from bisect import bisect_left, bisect_right
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
@@ -9,7 +9,7 @@ from operator import itemgetter
 
 from hoverslam_lib import _validate
 from hoverslam_lib._roots import bracketed_root
-from hoverslam_lib.descent import Descent, StepTooLargeError, advance, coast, fly
+from hoverslam_lib.descent import Descent, StepTooLargeError, advance, coast, finish, fly
 from hoverslam_lib.integrators import dop8, rk4, step_function
 from hoverslam_lib.trajectory import time_grid
 
@@ -91,12 +91,56 @@ def hover_height(descent, t_ignite, *, dt=0.02, method="rk4"):
     step = step_function(method)
     _require_thrust(descent)
     nodes, end = coast(descent, t_ignite, dt=dt, step=step)
-    if end == "ground":
-        return math.nan
-    t, h, v = nodes[-1]
+    return math.nan if end == "ground" else _hover_height(descent, *nodes[-1], dt=dt, step=step)
+
+
+def _hover_height(descent, t, h, v, *, dt, step):
     hardest = (descent.booster.thrust + abs(descent.drag(h, v))) / descent.booster.dry_mass
     _validate.step_count(abs(v) / hardest, dt)
     return _stop(descent, t, h, v, dt=dt, step=step)[1]
+
+
+class FreeFall:
+    """The fall that all flights of a descent begin with: computed once, then any number of ignitions is tried.
+
+    Parameters
+    ----------
+    descent : Descent
+    dt : float
+        Step size [s].
+    method : str or callable
+        A key of `METHODS`, or a step function.
+
+    Raises
+    ------
+    ValueError, TypeError
+        As `fly`, with t_ignite = None.
+    """
+
+    def __init__(self, descent, *, dt=0.02, method="rk4"):
+        self.flight = fly(descent, None, dt=dt, method=method)
+        self.descent, self._dt, self._step = descent, float(dt), step_function(method)
+        self._nodes = list(zip(self.flight.t.tolist(), self.flight.h.tolist(), self.flight.v.tolist(), strict=True))
+
+    def fly(self, t_ignite, controller=None):
+        """Return the Flight that `fly` returns."""
+        return finish(self.descent, t_ignite, *self._until(t_ignite), controller, dt=self._dt, step=self._step)
+
+    def hover_height(self, t_ignite):
+        """Return the height [m] that `hover_height` returns."""
+        _require_thrust(self.descent)
+        nodes, end = self._until(t_ignite)
+        return math.nan if end == "ground" else _hover_height(self.descent, *nodes[-1], dt=self._dt, step=self._step)
+
+    def _until(self, t_ignite):
+        """What `coast` returns: the last step before t_ignite is taken anew, to end on it."""
+        t_ignite = _validate.number("t_ignite", t_ignite, "s", least=0)
+        i = bisect_left(self._nodes, t_ignite - 1e-9 * self._dt, key=itemgetter(0))
+        if i == len(self._nodes):
+            return self._nodes, "ground"
+        before = max(i - 1, 0)
+        last, end = coast(self.descent, t_ignite, dt=self._dt, step=self._step, start=self._nodes[before])
+        return self._nodes[:before] + last, end
 
 
 def best_ignition(descent):
@@ -176,13 +220,14 @@ def ignition_table(t_ignite, *, dt, methods=("rk4", "symplectic_euler"), descent
     if not isinstance(t_ignite, Iterable) or isinstance(t_ignite, str):
         raise TypeError(f"t_ignite must be a collection of ignition times [s]; got {t_ignite!r}")
     times, methods = list(t_ignite), list(methods)
+    falls = [FreeFall(descent, dt=dt, method=method) for method in methods]
     rows = []
     for t in times:
         row = []
-        for method in methods:
-            flight = fly(descent, t, dt=dt, method=method)
+        for fall in falls:
+            flight = fall.fly(t)
             v_touchdown = flight.touchdown[1] if flight.touchdown else math.nan
-            row += [hover_height(descent, t, dt=dt, method=method), v_touchdown, flight.outcome]
+            row += [fall.hover_height(t), v_touchdown, flight.outcome]
         rows.append(row)
     quantities = ["hover height [m]", "touchdown velocity [m/s]", "outcome"]
     columns = pd.MultiIndex.from_product([methods, quantities])

@@ -18,6 +18,7 @@ from hoverslam_lib import (
     MARS,
     MOON,
     Descent,
+    FreeFall,
     Ignition,
     NoSoftLanding,
     Planet,
@@ -394,3 +395,38 @@ def test_an_empty_table_is_empty_or_refused_by_name(empty):
         assert next(iter(empty)) in str(error)  # noqa: PT017
     else:
         assert table.size == 0
+
+
+@pytest.mark.parametrize("method", ["explicit_euler", "symplectic_euler", "rk4", "gauss4"])
+@pytest.mark.parametrize(
+    "descent", [Descent(), Descent(planet=MOON), Descent(height=30e3, velocity=700.0), LANDING_BURN], ids=range(4)
+)
+def test_shared_fall_leads_to_the_same_flights(descent, method):
+    dt = 0.25
+    fall = FreeFall(descent, dt=dt, method=method)
+    end = fall.flight.t[-1]
+    turn = fall.flight.t[np.argmax(fall.flight.h)]
+    random = np.random.default_rng(4).uniform(0, end, 40)
+    for t in [0.0, dt, dt + 1e-12, 3 * dt - 1e-12, turn, turn + 1e-3, *random, 0.999 * end, end, end + 1.0]:
+        flown, anew = fall.fly(t), fly(descent, t, dt=dt, method=method)
+        assert flown.outcome == anew.outcome
+        for name in ("t", "h", "v", "mass", "throttle"):
+            np.testing.assert_allclose(getattr(flown, name), getattr(anew, name), rtol=1e-13, atol=1e-9)
+        assert flown.t[-1] == pytest.approx(anew.t[-1], abs=1e-9)
+        again = hover_height(descent, t, dt=dt, method=method)
+        np.testing.assert_allclose(fall.hover_height(t), again, rtol=1e-12, atol=1e-7)
+
+
+def test_shared_fall_takes_a_controller_and_refuses_what_fly_refuses():
+    def half(t, h, v, mass):
+        return 0.5
+
+    fall = FreeFall(LANDING_BURN, dt=0.1)
+    assert fall.fly(20.0, half).throttle[-1] == 0.5
+    for bad in (-1.0, math.nan, "now", [1.0]):
+        with pytest.raises((ValueError, TypeError), match="t_ignite"):
+            fall.fly(bad)
+    with pytest.raises(TypeError, match="controller"):
+        fall.fly(20.0, 0.5)
+    with pytest.raises(ValueError, match="never comes down"):
+        FreeFall(Descent(velocity=20e3))

@@ -229,20 +229,21 @@ def fly(descent, t_ignite, *, dt=0.02, method="rk4", controller=None):
     if end == "space":
         _, h, v = coasted[-1]
         raise ValueError(f"the booster never comes down: at h = {h:.0f} m it still climbs at {v:.0f} m/s")
-    return finish(descent, t_ignite, coasted, end, controller, dt=dt, step=step)
+    return finish(descent, t_ignite, np.array(coasted), end, controller, dt=dt, step=step)
 
 
 def finish(descent, t_ignite, coasted, end, controller=None, *, dt, step):
-    """Return the Flight that begins with what `coast` returned; see `fly` for the rest."""
+    """Return the Flight that begins with a fall, its nodes an array of shape (n, 3); see `coast` and `fly`."""
     if controller is not None and not callable(controller):
         raise TypeError(f"controller must be a function of (t, h, v, mass); got {controller!r}")
-    landed = end == "ground"
-    nodes = [(t, h, v, descent.booster.initial_mass, 0.0) for t, h, v in coasted]
-    hover = None
-    if not landed:
-        nodes[-1:], landed, hover = _burn(descent, *coasted[-1], controller, dt=dt, step=step)
-
-    t, h, v, mass, throttle = (np.array(column) for column in zip(*nodes, strict=True))
+    landed, hover = end == "ground", None
+    if landed:
+        burnt = [(*coasted[-1].tolist(), descent.booster.initial_mass, 0.0)]
+    else:
+        burnt, landed, hover = _burn(descent, *coasted[-1].tolist(), controller, dt=dt, step=step)
+    fallen = np.empty((len(coasted) - 1, 5))
+    fallen[:, :3], fallen[:, 3:] = coasted[:-1], (descent.booster.initial_mass, 0.0)
+    t, h, v, mass, throttle = np.concatenate([fallen, burnt]).T
     if landed:
         outcome = "soft landing" if abs(v[-1]) <= SOFT_SPEED else "crash"
     else:

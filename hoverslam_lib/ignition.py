@@ -1,11 +1,13 @@
 """When to ignite: the optimum of the equation, and tables of what other times lead to."""
 
 import math
-from bisect import bisect_left, bisect_right
+from bisect import bisect_right
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
 from operator import itemgetter
+
+import numpy as np
 
 from hoverslam_lib import _validate
 from hoverslam_lib._roots import bracketed_root
@@ -120,7 +122,7 @@ class FreeFall:
     def __init__(self, descent, *, dt=0.02, method="rk4"):
         self.flight = fly(descent, None, dt=dt, method=method)
         self.descent, self._dt, self._step = descent, float(dt), step_function(method)
-        self._nodes = list(zip(self.flight.t.tolist(), self.flight.h.tolist(), self.flight.v.tolist(), strict=True))
+        self._nodes = np.stack([self.flight.t, self.flight.h, self.flight.v], axis=1)
 
     def fly(self, t_ignite, controller=None):
         """Return the Flight that `fly` returns."""
@@ -130,17 +132,22 @@ class FreeFall:
         """Return the height [m] that `hover_height` returns."""
         _require_thrust(self.descent)
         nodes, end = self._until(t_ignite)
-        return math.nan if end == "ground" else _hover_height(self.descent, *nodes[-1], dt=self._dt, step=self._step)
+        return (
+            math.nan
+            if end == "ground"
+            else _hover_height(self.descent, *nodes[-1].tolist(), dt=self._dt, step=self._step)
+        )
 
     def _until(self, t_ignite):
         """What `coast` returns: the last step before t_ignite is taken anew, to end on it."""
         t_ignite = _validate.number("t_ignite", t_ignite, "s", least=0)
-        i = bisect_left(self._nodes, t_ignite - 1e-9 * self._dt, key=itemgetter(0))
+        i = int(np.searchsorted(self.flight.t, t_ignite - 1e-9 * self._dt))
         if i == len(self._nodes):
             return self._nodes, "ground"
         before = max(i - 1, 0)
-        last, end = coast(self.descent, t_ignite, dt=self._dt, step=self._step, start=self._nodes[before])
-        return self._nodes[:before] + last, end
+        start = tuple(self._nodes[before].tolist())
+        last, end = coast(self.descent, t_ignite, dt=self._dt, step=self._step, start=start)
+        return np.concatenate([self._nodes[:before], last]), end
 
 
 def best_ignition(descent):

@@ -86,9 +86,9 @@ FALCON_9_LANDING_BURN = Booster(
     drag_coefficient=0.5,
     radius=1.83,
 )
-"""The same booster on one engine, as it really lands.
+"""The same booster on one engine.
 
 Thrust of one Merlin 1D at sea level, 845 kN, and the diameter of 3.66 m: Falcon User's Guide, SpaceX, September 2021.
-Burn rate from the specific impulse of 282 s at sea level that SpaceX published for that engine. Dry mass and drag
+Burn rate from 282 s, the specific impulse at sea level that is commonly quoted for that engine. Dry mass and drag
 coefficient are the paper's. What is left for the landing burn is not public: 6 t is a round number.
 """

@@ -85,6 +85,7 @@ def _clean(notebook):
         for output in cell.get("outputs", []):
             if "metadata" in output:
                 output["metadata"] = {}
+            output.get("data", {}).pop("application/vnd.jupyter.widget-view+json", None)  # the still stays
 
 
 def problems(path):

@@ -1,0 +1,144 @@
+"""Figures that follow the hand: what stays is drawn once, and at each movement of a slider only what moves."""
+
+import html
+import io
+import math
+import zlib
+
+import matplotlib.pyplot as plt
+import numpy as np
+from IPython import get_ipython
+from IPython.display import display
+from ipywidgets import HTML, Image, Layout, VBox
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from PIL import Image as Pixels
+
+from hoverslam_lib.descent import SOFT_SPEED
+from hoverslam_lib.plotting import Picture, _png
+
+STILL = "Run this cell to make it live."
+
+_SHOWN = {}  # by cell and run: so that a cell run again takes its former figure out of memory
+
+
+class Live:
+    """A figure and the controls that it follows.
+
+    Only artists made with ``animated=True`` are drawn anew, over a background that is drawn once: set the limits of
+    the axes before. While a picture is being made the browser holds movements back and then sends the newest only, so
+    that none queue up.
+
+    Parameters
+    ----------
+    fig : matplotlib.figure.Figure
+        Made by ``plt.subplots`` as always; it is taken out of pyplot's hands.
+    update : callable
+        ``update(**values)`` gets the value of every control by its name, moves the artists, and returns a sentence
+        that says with numbers what the picture shows. If it raises, the message is shown in place of the sentence,
+        and nothing that moves is drawn.
+    **controls : ipywidgets.Widget
+        Any with a value; ``description`` is its label and should have the unit.
+    """
+
+    def __init__(self, fig, update, **controls):
+        plt.close(fig)
+        self.fig, self.update, self.controls = fig, update, controls
+        self._canvas = FigureCanvasAgg(fig)
+        self._canvas.draw()
+        fig.set_layout_engine("none")
+        self._background = self._canvas.copy_from_bbox(fig.bbox)
+        self._moving = sorted(fig.findobj(lambda artist: artist.get_animated()), key=lambda artist: artist.zorder)
+        self.text, self.message = "", HTML()
+        self.picture = Image(format="png", layout=Layout(width=f"{fig.bbox.width:.0f}px", max_width="100%"))
+        for control in controls.values():
+            control.layout.width = control.layout.width or "34em"
+            control.style.description_width = "11em"
+            control.observe(self._follow, "value")
+        self.widget = VBox([*controls.values(), self.message, self.picture])
+        self._follow()
+
+    def set(self, **values):
+        """Give controls new values and draw once."""
+        for name in values:
+            self.controls[name].unobserve(self._follow, "value")
+        try:
+            for name, value in values.items():
+                self.controls[name].value = value
+        finally:
+            for name in values:
+                self.controls[name].observe(self._follow, "value")
+        self._follow()
+
+    def show(self):
+        """Show the controls and the figure; what a notebook stores of them is a still picture."""
+        _close_former_run(self)
+        still = Picture(_png(self.fig), self.text, round(self.fig.bbox.width))
+        page = f"{still._repr_html_()}<p>{html.escape(self.text)} <em>{STILL}</em></p>"
+        view = self.widget._repr_mimebundle_()
+        display({**view, "text/html": page, "text/plain": self.text}, raw=True)
+
+    def close(self):
+        """Take the controls and the picture out of the page and of memory."""
+        for widget in (*self.controls.values(), self.message, self.picture, self.widget):
+            widget.close()
+
+    def _follow(self, change=None):
+        try:
+            self.text = self.update(**{name: control.value for name, control in self.controls.items()})
+        except Exception as error:  # whatever a student's own function raises is shown, and the controls stay usable
+            self.text = f"Not possible: {error or type(error).__name__}"
+            moving = ()
+        else:
+            moving = self._moving
+        self._canvas.restore_region(self._background)
+        for artist in moving:
+            self.fig.draw_artist(artist)
+        self.picture.value = _encoded(np.asarray(self._canvas.buffer_rgba()))
+        self.message.value = f'<div role="status" style="line-height: 1.4">{html.escape(self.text)}</div>'
+
+
+def verdict(flight, height):
+    """Say what became of a flight, led by the signed hover height.
+
+    Parameters
+    ----------
+    flight : Flight
+    height : float
+        [m], from `hover_height`; nan if it has none.
+
+    Returns
+    -------
+    str
+    """
+    if flight.outcome == "soft landing":
+        return f"soft landing with {abs(flight.touchdown[1]):.2f} m/s, hover height {height:+.3f} m"
+    if flight.outcome == "stopped too high":
+        return f"stopped {_length(flight.hover[1])} too high"
+    if flight.outcome == "out of propellant":
+        return f"tank empty {_length(flight.h[-1])} above the ground, at {flight.v[-1]:.0f} m/s"
+    braked = f"hover height −{_length(-height)}, " if -math.inf < height else ""
+    return f"{braked}{-flight.touchdown[1] - SOFT_SPEED:.1f} m/s too fast at the ground"
+
+
+def _length(metres):
+    return f"{metres / 1e3:.2f} km" if metres >= 1e3 else f"{metres:.3g} m"
+
+
+def _encoded(pixels):
+    """A PNG, packed as fast as may be: time counts here, not size."""
+    packed = io.BytesIO()
+    Pixels.fromarray(pixels).convert("RGB").save(packed, format="png", compress_level=1, compress_type=zlib.Z_RLE)
+    return packed.getvalue()
+
+
+def _close_former_run(live):
+    shell = get_ipython()
+    parent = shell.get_parent() if hasattr(shell, "get_parent") else {}
+    cell = parent.get("metadata", {}).get("cellId")
+    if cell is None:
+        return
+    run = parent["header"]["msg_id"]
+    for former in [key for key in _SHOWN if key[0] == cell and key[1] != run]:
+        for shown in _SHOWN.pop(former):
+            shown.close()
+    _SHOWN.setdefault((cell, run), []).append(live)

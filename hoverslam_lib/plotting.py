@@ -110,9 +110,14 @@ def flight(axes, flown, *, color="#009E73", name=None):
         For the height [km] and the velocity [m/s].
     flown : Flight or Trajectory
     """
-    hover = getattr(flown, "hover", None)
-    end = len(flown.t) if hover is None else int(np.searchsorted(flown.t, hover[0])) + 1
+    end = hover_end(flown)
     for ax, values, name_of_axis in zip(axes, (flown.h / 1e3, flown.v), ("h [km]", "v [m/s]"), strict=True):
         ax.plot(flown.t[:end], values[:end], color=color, label=name)
         ax.plot(flown.t[end - 1 :], values[end - 1 :], color=color, alpha=0.3)
         ax.set(xlabel="t [s]", ylabel=name_of_axis)
+
+
+def hover_end(flown):
+    """How many samples of a flight come before the end of its hover: all, if it has none."""
+    hover = getattr(flown, "hover", None)
+    return len(flown.t) if hover is None else int(np.searchsorted(flown.t, hover[0])) + 1

@@ -53,6 +53,7 @@ class Live:
         for control in controls.values():
             control.layout.width = control.layout.width or "34em"
             control.style.description_width = "11em"
+            control.tooltip = control.description
             control.observe(self._follow, "value")
         self.widget = VBox([*controls.values(), self.message, self.picture])
         self._follow()
@@ -86,7 +87,7 @@ class Live:
         try:
             self.text = self.update(**{name: control.value for name, control in self.controls.items()})
         except Exception as error:  # whatever a student's own function raises is shown, and the controls stay usable
-            self.text = f"Not possible: {error or type(error).__name__}"
+            self.text = f"Not possible: {str(error) or type(error).__name__}"
             moving = ()
         else:
             moving = self._moving
@@ -94,7 +95,11 @@ class Live:
         for artist in moving:
             self.fig.draw_artist(artist)
         self.picture.value = _encoded(np.asarray(self._canvas.buffer_rgba()))
-        self.message.value = f'<div role="status" style="line-height: 1.4">{html.escape(self.text)}</div>'
+        self.say(self.text)
+
+    def say(self, text):
+        """Put a sentence above the picture; screen readers speak it."""
+        self.message.value = f'<div role="status" style="line-height: 1.4">{html.escape(text)}</div>'
 
 
 def verdict(flight, height):

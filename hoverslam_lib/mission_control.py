@@ -1,0 +1,280 @@
+"""One page of live controls over the whole problem, for those who teach: ``MissionControl().show()``."""
+
+import base64
+import math
+from dataclasses import replace
+from functools import lru_cache
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+from ipywidgets import (
+    HTML,
+    Button,
+    Checkbox,
+    Dropdown,
+    FloatSlider,
+    GridBox,
+    HBox,
+    IntSlider,
+    Layout,
+    Play,
+    SelectionSlider,
+    SelectMultiple,
+    VBox,
+    jslink,
+)
+
+from hoverslam_lib import plotting, published
+from hoverslam_lib.booster import FALCON_9
+from hoverslam_lib.descent import Descent
+from hoverslam_lib.ignition import FreeFall, NoSoftLanding, best_ignition
+from hoverslam_lib.integrators import METHODS
+from hoverslam_lib.live import Live, verdict
+from hoverslam_lib.planet import EARTH, MARS, MOON
+
+PLANETS = {"Earth": EARTH, "Mars": MARS, "Moon": MOON}
+G = 9.81
+KEPT = 12
+"""How many trials the table remembers."""
+
+STEPS = [round(k * 10.0**n, 6) for n in (-3, -2, -1) for k in (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8)][7:] + [1.0]
+"""Step sizes [s], about evenly spaced on a logarithmic scale; round, because the published numbers depend on it."""
+
+START = {
+    "coarse": 60.2,
+    "fine": 0.0,
+    "dt": 0.02,
+    "methods": ("rk4",),
+    "thrust": 7.6,
+    "drag": 0.5,
+    "planet": "Earth",
+    "faults": False,
+    "moment": 100,
+}
+
+# name of the axis, its limits, and what of a trial is drawn on it
+PANELS = (
+    ("height [km]", (-5, 160), lambda trial: trial["h"] / 1e3),
+    ("velocity [m/s]", (-2700, 500), lambda trial: trial["v"]),
+    ("velocity [m/s]", (-2700, 500), lambda trial: trial["v"]),
+    ("mass [t]", (-10, 62), lambda trial: trial["mass"] / 1e3),
+    ("thrust [MN]", (-0.5, 16), lambda trial: trial["thrust"] / 1e6),
+    ("felt [g]", (-5, 45), lambda trial: trial["felt"] / G),
+)
+OVER_HEIGHT = 2
+
+
+@lru_cache(maxsize=16)
+def _fall(descent, dt, method):
+    return FreeFall(descent, dt=dt, method=method)
+
+
+@lru_cache(maxsize=16)
+def try_out(descent, t_ignite, dt, method, faults=False):
+    """Fly once.
+
+    Parameters
+    ----------
+    descent : Descent
+    t_ignite, dt : float
+        [s]
+    method : str
+        A key of `METHODS`.
+    faults : bool
+        Fly the published equation, which knows the paper's descent only, with all its faults.
+
+    Returns
+    -------
+    dict
+        "t", "h", "v", "mass", "thrust" and "felt", arrays in SI units; "end", how many samples come before the end
+        of a hover; "height", the signed hover height [m], nan if there is none; and "verdict", a str.
+
+    Raises
+    ------
+    ValueError
+        If the published equation is asked for another descent than the paper's.
+    """
+    if faults:
+        return _try_published(descent, t_ignite, dt, method)
+    fall = _fall(descent, dt, method)
+    flight = fall.fly(t_ignite)
+    try:
+        height = fall.hover_height(t_ignite)
+    except NoSoftLanding:
+        height = math.nan
+    return {
+        "t": flight.t,
+        "h": flight.h,
+        "v": flight.v,
+        "mass": flight.mass,
+        "thrust": flight.throttle * descent.booster.thrust,
+        "felt": flight.felt_acceleration,
+        "end": plotting.hover_end(flight),
+        "height": height,
+        "verdict": verdict(flight, height),
+    }
+
+
+def _try_published(descent, t_ignite, dt, method):
+    if descent != Descent():
+        raise ValueError("the published equation knows the paper's booster on the Earth only: press Reset")
+    run = published.fly(t_ignite, dt=dt, method=method)
+    lit = run.t > t_ignite
+    f = published.acceleration(t_ignite)
+    h, v = published.listed(run, at_rest=bool(np.any(run.v >= 0)))
+    return {
+        "t": run.t,
+        "h": run.h,
+        "v": run.v,
+        "mass": FALCON_9.initial_mass - FALCON_9.burn_rate * np.where(lit, run.t - t_ignite, 0),
+        "thrust": np.where(lit, -7.6e3, 0.0),
+        "felt": np.array([f(*row) for row in zip(run.t, run.h, run.v, strict=True)]) + EARTH.gravity(run.h),
+        "end": len(run.t),
+        "height": math.nan,
+        "verdict": f"comes to 0 m/s {h:.1f} m above the ground" if v == 0 else f"largest velocity {v:.1f} m/s",
+    }
+
+
+class MissionControl:
+    """The controls, the figure that follows them, and the table of the trials that were kept."""
+
+    def __init__(self):
+        self.trials = []
+        names = {method.title: key for key, method in METHODS.items()}
+        controls = {
+            "coarse": FloatSlider(min=0, max=90, step=0.1, description="ignition [s]", readout_format=".1f"),
+            "fine": FloatSlider(min=-50, max=50, step=0.001, description="plus [ms]", readout_format=".3f"),
+            "dt": SelectionSlider(options=STEPS, description="step dt [s]"),
+            "thrust": FloatSlider(min=0.2, max=15, step=0.1, description="thrust [MN]", readout_format=".1f"),
+            "drag": FloatSlider(min=0, max=2, step=0.05, description="drag coefficient"),
+            "planet": Dropdown(options=list(PLANETS), description="planet"),
+            "methods": SelectMultiple(options=names.items(), rows=4, description="methods"),
+            "faults": Checkbox(description="the published equation, faults included", indent=True),
+            "moment": IntSlider(min=0, max=100, description="moment [% of flight]"),
+        }
+        for name, control in controls.items():
+            control.value = START[name]
+            control.layout.width = "100%"
+        self.live = Live(self._figure(), self._fly, **controls)
+        self.table, self.play = HTML(), Play(100, min=0, max=100, step=2, interval=120, description="play the flight")
+        jslink((self.play, "value"), (controls["moment"], "value"))
+        self.live.widget = self._layout(controls)
+
+    def show(self):
+        """Show the page; a notebook stores a still picture of it."""
+        self.live.show()
+
+    def reset(self, _=None):
+        """Put every control where it began."""
+        self.live.set(**START)
+
+    def find(self, _=None):
+        """Set the ignition to the optimum of the descent that is set, to the microsecond."""
+        try:
+            best = best_ignition(self._descent(**self._values()))
+        except (ValueError, ArithmeticError) as error:
+            self.live.say(f"No soft landing: {error}")
+            return
+        coarse = round(best.t_ignite, 1)
+        self.live.set(coarse=coarse, fine=round((best.t_ignite - coarse) * 1e3, 3), faults=False)
+
+    def keep(self, _=None):
+        """Add what is shown to the table of trials."""
+        values = self._values()
+        for method in values["methods"]:
+            trial = try_out(self._descent(**values), _time(**values), values["dt"], method, values["faults"])
+            row = {"t_ignite [s]": round(_time(**values), 6), "dt [s]": values["dt"], "method": method}
+            row |= {"thrust [MN]": values["thrust"], "drag coefficient": values["drag"], "planet": values["planet"]}
+            row |= {"equation": "published" if values["faults"] else "right"}
+            row |= {"hover height [m]": round(trial["height"], 4), "verdict": trial["verdict"]}
+            self.trials = [*self.trials, row][-KEPT:]
+        self._list()
+
+    def clear(self, _=None):
+        """Empty the table of trials."""
+        self.trials = []
+        self._list()
+
+    def to_frame(self):
+        """The trials that were kept, as a pandas DataFrame, the newest last."""
+        return pd.DataFrame(self.trials)
+
+    def _values(self):
+        return {name: control.value for name, control in self.live.controls.items()}
+
+    def _descent(self, thrust, drag, planet, **_):
+        booster = replace(FALCON_9, thrust=FALCON_9.thrust * thrust / 7.6, drag_coefficient=drag)
+        return Descent(booster, PLANETS[planet])
+
+    def _figure(self):
+        fig, axes = plt.subplots(2, 3, figsize=(9.8, 4.7))
+        self.lines = {name: [] for name in METHODS}
+        for n, (ax, (name, limits, _)) in enumerate(zip(axes.flat, PANELS, strict=True)):
+            ax.set(ylabel=name, ylim=limits, xlabel="t [s]", xlim=(0, 100))
+            if n == OVER_HEIGHT:
+                ax.set(xlabel="height [m]", xscale="log", xlim=(2e5, 1e-3))
+            for method, lines in self.lines.items():
+                look = plotting.line(method, label=None) | {"animated": True, "linewidth": 1.6}
+                before, after, now = (ax.plot([], [], **look)[0] for _ in range(3))
+                after.set_alpha(0.3)
+                now.set(marker="o", markersize=7)
+                lines.append((before, after, now))
+        return fig
+
+    def _fly(self, methods, dt, moment, faults, **values):
+        if not methods:
+            raise ValueError("choose at least one method")
+        descent, t_ignite = self._descent(**values), _time(**values)
+        said = []
+        for method, lines in self.lines.items():
+            trial = try_out(descent, t_ignite, dt, method, faults) if method in methods else None
+            _draw(lines, trial, moment / 100)
+            if trial:
+                said.append(f"{METHODS[method].title}: {trial['verdict']}")
+        return "; ".join(said) + f". Ignition at {t_ignite:.6f} s, dt = {dt:.3g} s."
+
+    def _layout(self, controls):
+        buttons = []
+        for name, what, act in (
+            ("Reset", "every control to where it began", self.reset),
+            ("Find the optimum", "set the best ignition time", self.find),
+            ("Keep this trial", "add it to the table", self.keep),
+            ("Clear the table", "forget all trials", self.clear),
+        ):
+            button = Button(description=name, tooltip=what, layout=Layout(width="12em"))
+            button.on_click(act)
+            buttons.append(button)
+        left = VBox([controls[name] for name in ("coarse", "fine", "dt", "thrust", "drag")])
+        moment = HBox([controls["moment"], self.play])
+        right = VBox([controls["planet"], controls["methods"], controls["faults"], moment])
+        panel = GridBox([left, right], layout=Layout(grid_template_columns="50% 50%", max_width="980px"))
+        return VBox([panel, HBox(buttons), self.live.message, self.live.picture, self.table])
+
+    def _list(self):
+        if not self.trials:
+            self.table.value = ""
+            return
+        frame = self.to_frame()
+        data = base64.b64encode(frame.to_csv(index=False).encode("utf-8")).decode("ascii")
+        link = f'<a download="trials.csv" href="data:text/csv;base64,{data}">Download the table as CSV</a>'
+        self.table.value = f"{frame.to_html(index=False, border=0, na_rep='–')}<p>{link}</p>"
+
+
+def _time(coarse, fine, **_):
+    return max(coarse + fine / 1e3, 0.0)
+
+
+def _draw(lines, trial, share):
+    """Put one trial on the six panels, with a dot at a share of its time; nothing if there is no trial."""
+    for n, (parts, (_, _, value)) in enumerate(zip(lines, PANELS, strict=True)):
+        if trial is None:
+            for part in parts:
+                part.set_data([], [])
+            continue
+        x, y, end = np.maximum(trial["h"], 1e-3) if n == OVER_HEIGHT else trial["t"], value(trial), trial["end"]
+        now = int(np.searchsorted(trial["t"], share * trial["t"][-1]))
+        before, after, dot = parts
+        before.set_data(x[:end], y[:end])
+        after.set_data(x[end - 1 :], y[end - 1 :])
+        dot.set_data(x[now : now + 1], y[now : now + 1])

@@ -1,0 +1,111 @@
+"""JupyterLab or Voilà in a headless Chromium, as the tests and the benchmark drive them."""
+
+import contextlib
+import json
+import os
+import shutil
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+FLAGS = [
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+]
+TOKEN = "a-token-for-the-tests"
+SETTINGS = {
+    "@jupyterlab/apputils-extension:notification": {"fetchNews": "false", "checkForUpdates": False},
+    "@jupyterlab/notebook-extension:tracker": {"windowingMode": "none"},
+    "@jupyterlab/docmanager-extension:plugin": {"autosave": False},
+}
+IDLE = """() => {
+    const session = window.jupyterapp.shell.currentWidget?.sessionContext?.session;
+    return session?.kernel?.connectionStatus === 'connected' && session.kernel.status === 'idle';
+}"""
+OUTPUTS = """() => {
+    const cells = window.jupyterapp.shell.currentWidget.content.model.cells;
+    const found = {errors: [], cells: 0, run: 0};
+    for (const cell of cells) {
+        if (cell.type !== 'code') continue;
+        found.cells += 1;
+        found.run += cell.executionCount !== null;
+        for (let i = 0; i < cell.outputs.length; i++) {
+            const output = cell.outputs.get(i);
+            if (output.type === 'error') found.errors.push(output.toJSON().evalue);
+        }
+    }
+    return found;
+}"""
+
+
+@contextlib.contextmanager
+def browser():
+    """A Chromium."""
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        chromium = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        try:
+            yield chromium
+        finally:
+            chromium.close()
+
+
+@contextlib.contextmanager
+def server(application, folder, config):
+    """``jupyter lab`` or ``voila`` on a folder of notebooks, with a configuration of its own; yields its address."""
+    config = Path(config)
+    (config / "labconfig").mkdir(parents=True, exist_ok=True)
+    (config / "labconfig" / "default_setting_overrides.json").write_text(json.dumps(SETTINGS))
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    commands = {
+        "lab": ["jupyterlab", "--allow-root", "--ServerApp.root_dir=.", "--LabApp.expose_app_in_browser=True"],
+        "voila": ["voila", "--Voila.ip=127.0.0.1", "."],
+    }
+    here = {"JUPYTER_CONFIG_DIR": config, "JUPYTERLAB_SETTINGS_DIR": config / "s", "JUPYTERLAB_WORKSPACES_DIR": config}
+    command = [sys.executable, "-m", *commands[application], "--no-browser", f"--port={port}"]
+    command.append(f"--IdentityProvider.token={TOKEN}")
+    with open(config / "log.txt", "w") as log:
+        running = subprocess.Popen(
+            command, cwd=folder, env=os.environ | {k: str(v) for k, v in here.items()}, stdout=log, stderr=log
+        )
+    try:
+        for _ in range(240):
+            with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", port), 1):
+                break
+            time.sleep(0.25)
+        yield f"http://127.0.0.1:{port}"
+    finally:
+        running.terminate()
+        running.wait(30)
+
+
+def open_notebook(page, address, name):
+    """Open a notebook in JupyterLab and wait for its kernel."""
+    page.goto(f"{address}/lab/tree/{name}?token={TOKEN}&reset")
+    page.wait_for_selector(".jp-Notebook .jp-Cell", timeout=60_000)
+    page.wait_for_function(IDLE, timeout=60_000)
+    page.evaluate("() => window.jupyterapp.commands.execute('application:toggle-left-area')")
+
+
+def run_all(page, timeout=180):
+    """Run every cell; returns {"errors": messages, "cells": how many, "run": how many of them}."""
+    page.evaluate("() => window.jupyterapp.commands.execute('notebook:run-all-cells')")
+    end = time.monotonic() + timeout
+    while time.monotonic() < end:
+        page.wait_for_function(IDLE, timeout=timeout * 1000)
+        found = page.evaluate(OUTPUTS)
+        if found["run"] == found["cells"] or found["errors"]:
+            return found
+        time.sleep(0.2)
+    return page.evaluate(OUTPUTS)

@@ -1,0 +1,126 @@
+"""Reading a student's answer, and comparing it."""
+
+import numpy as np
+
+from hoverslam_lib.checks.feedback import Wrong
+
+
+def number(value, name="the result"):
+    """A finite float, or `Wrong` with what it is instead."""
+    if value is None:
+        raise Wrong(f"{_start(name)} is None: is a `return` missing?")
+    if isinstance(value, str | bytes | bool | dict | set) or callable(value):
+        raise Wrong(f"{_start(name)} should be a number; it is {_shown(value)}.")
+    try:
+        array = np.asarray(value, dtype=float)
+    except (TypeError, ValueError):
+        raise Wrong(f"{_start(name)} should be a number; it is {_shown(value)}.") from None
+    if array.size != 1:
+        raise Wrong(f"{_start(name)} should be one number; it has the shape {array.shape}.")
+    if not np.isfinite(array).all():
+        raise Wrong(f"{_start(name)} is {array.item()}: is something divided by 0?")
+    return float(array.item())
+
+
+def pair(value, names=("h", "v")):
+    """Two finite floats, such as the (h, v) of a step."""
+    if value is None:
+        raise Wrong("The result is None: is a `return` missing?")
+    try:
+        first, second = value
+    except (TypeError, ValueError):
+        raise Wrong(f"The result should be the two numbers {names[0]}, {names[1]}; it is {_shown(value)}.") from None
+    return number(first, f"{names[0]} of the result"), number(second, f"{names[1]} of the result")
+
+
+def array(value, shape, name="the result"):
+    """An array of finite floats of a given shape."""
+    if value is None:
+        raise Wrong(f"{_start(name)} is None: is a `return` missing?")
+    try:
+        made = np.asarray(value, dtype=float)
+    except (TypeError, ValueError):
+        raise Wrong(f"{_start(name)} should be an array of numbers; it is {_shown(value)}.") from None
+    if made.shape != tuple(shape):
+        raise Wrong(f"{_start(name)} should have the shape {tuple(shape)}; it has {made.shape}.")
+    if not np.isfinite(made).all():
+        raise Wrong(f"{_start(name)} holds nan or inf: is something divided by 0?")
+    return made
+
+
+def choice(value, options):
+    """One of a few words; capitals and spaces do not count."""
+    if not isinstance(value, str) or value.strip().lower() not in options:
+        raise Wrong(f"Answer with one of {', '.join(map(repr, options))}; it is {_shown(value)}.")
+    return value.strip().lower()
+
+
+def compare(got, right, where, mistakes=None, *, rtol=1e-9, atol=1e-12):
+    """Raise `Wrong` unless the answer is right.
+
+    Parameters
+    ----------
+    got, right : float, str or array_like
+    where : str
+        What was asked, for the student: "for dt = 0.1 s".
+    mistakes : dict, optional
+        Name of a mistake: (what it leads to, the hint that belongs to it). One is named only if the answer is its
+        result, and if its result can be told from the right one.
+    """
+    if _same(got, right, rtol, atol):
+        return
+    for mistake, (wrong, hint) in (mistakes or {}).items():
+        if _same(got, wrong, rtol, atol) and not _same(wrong, right, rtol, atol):
+            raise Wrong(hint, mistake)
+    raise Wrong(f"Not right {where}: it gives {_digits(got)}.", nudge=True)
+
+
+def _same(a, b, rtol, atol):
+    if isinstance(a, str) or isinstance(b, str):
+        return a == b
+    a, b = np.asarray(a, dtype=float), np.asarray(b, dtype=float)
+    return a.shape == b.shape and np.allclose(a, b, rtol=rtol, atol=atol)
+
+
+def repeatable(function, *arguments):
+    """Call a function twice with copies of the same arguments; return the first result.
+
+    Raises `Wrong` if it changes its arguments, or gives another result the second time.
+    """
+    copies = [a.copy() if isinstance(a, np.ndarray) else a for a in arguments]
+    first = function(*copies)
+    for before, after in zip(arguments, copies, strict=True):
+        if isinstance(before, np.ndarray) and not np.array_equal(before, after):
+            raise Wrong("Your function changes the arrays that it is given: work on a copy.", "changes its arguments")
+    again = function(*(a.copy() if isinstance(a, np.ndarray) else a for a in arguments))
+    try:
+        same = np.array_equal(np.asarray(first, dtype=float), np.asarray(again, dtype=float), equal_nan=True)
+    except (TypeError, ValueError):
+        same = True  # not numbers at all: that is for another test to say
+    if not same:
+        raise Wrong("Called twice with the same arguments, it gives two results.", "remembers its last call")
+    return first
+
+
+def takes(function, *names):
+    """Raise `Wrong` unless the answer is something that can be called."""
+    if not callable(function):
+        raise Wrong(f"The answer should be a function of ({', '.join(names)}); it is {_shown(function)}.")
+    return function
+
+
+def _start(name):
+    return name[0].upper() + name[1:]
+
+
+def _shown(value):
+    text = repr(value)
+    return text if len(text) <= 40 else f"{text[:37]}…"
+
+
+def _digits(got):
+    if isinstance(got, str):
+        return repr(got)
+    values = np.atleast_1d(np.asarray(got, dtype=float)).ravel()
+    listed = ", ".join(f"{x:.6g}" for x in values[:4])
+    return f"{listed}, …" if values.size > 4 else listed

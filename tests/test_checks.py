@@ -1,0 +1,326 @@
+"""The exercises: right answers pass, wrong ones do not, and a hint names a mistake only if it was made."""
+
+import ast
+import contextlib
+import importlib
+import inspect
+import json
+import math
+import re
+import sys
+import textwrap
+import time
+
+import nbformat
+import numpy as np
+import pytest
+
+from hoverslam_lib import checks, course
+from hoverslam_lib.checks import feedback, record
+
+OPEN = "○ not attempted yet"
+LESSONS = [path for path in course.lessons() if re.match(r"\d", path.name)]
+NUMBERS = list(checks.EXERCISES)
+
+
+def answers(kind):
+    """Every lesson's answers of a kind, each with the number of its exercise."""
+    found = []
+    for lesson in sorted({int(number.split(".")[0]) for number in NUMBERS} - {0}):
+        listed = getattr(importlib.import_module(f"answers.lesson_{lesson:02}"), kind)
+        for number, given in listed.items():
+            for n, answer in enumerate(given):
+                found.append(pytest.param(number, answer, id=f"{number}-{n}"))
+    return found
+
+
+def cells_of(path):
+    """Number and source of every exercise cell, in order."""
+    names = {check.__name__: number for number, check in checks.EXERCISES.items()}
+    for cell in nbformat.read(path, as_version=4).cells:
+        called = re.search(r"^checks\.(\w+)\(", cell.source, re.MULTILINE) if cell.cell_type == "code" else None
+        if called and called.group(1) in names:
+            yield names[called.group(1)], cell
+
+
+def solutions(lesson):
+    path = record.SOLUTIONS / f"lesson_{lesson:02}.py"
+    return record.blocks(path.read_text(encoding="utf-8"))
+
+
+@pytest.fixture(autouse=True)
+def _folder(tmp_path, monkeypatch):
+    """A student's folder, and no other."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(record.platformdirs, "user_data_dir", lambda name: str(tmp_path / "user"))
+    feedback._tries.clear()
+
+
+def given(answer):
+    """An exercise may ask for several things."""
+    return answer if isinstance(answer, tuple) else (answer,)
+
+
+@pytest.mark.parametrize(("number", "case"), answers("WRONG"))
+def test_wrong_answer_does_not_pass_and_only_its_own_mistake_is_named(number, case):
+    answer, mistake = case
+    said = checks.EXERCISES[number](*given(answer))
+    assert not said.done
+    assert said.mistake == mistake, said
+    assert said.hint or not said.attempted
+
+
+@pytest.mark.parametrize(("number", "answer"), answers("RIGHT"))
+def test_right_answer_written_differently_passes(number, answer):
+    assert repr(checks.EXERCISES[number](*given(answer))) == repr(
+        feedback.Feedback(number, checks.EXERCISES[number].tests, checks.EXERCISES[number].tests)
+    )
+
+
+def test_every_exercise_has_wrong_answers_and_a_right_one():
+    wrong = {number: [] for number in NUMBERS if not number.startswith("0")}
+    right = dict.fromkeys(wrong, 0)
+    for param in answers("WRONG"):
+        wrong[param.values[0]].append(param.values[1])
+    for param in answers("RIGHT"):
+        right[param.values[0]] += 1
+    assert [number for number, listed in wrong.items() if len(listed) < 4] == []
+    assert [number for number, count in right.items() if count < 1] == []
+
+
+def test_every_named_mistake_is_made_by_some_wrong_answer():
+    """A hint that no answer of ours calls forth was never read."""
+    made = {(param.values[0], param.values[1][1]) for param in answers("WRONG")}
+    for number, check in checks.EXERCISES.items():
+        if number == "0.1":
+            continue
+        tree = ast.parse(textwrap.dedent(inspect.getsource(check.judge)))
+        listed = [node for node in ast.walk(tree) if isinstance(node, ast.Dict)]
+        named = {
+            key.value
+            for node in listed
+            for key, value in zip(node.keys, node.values, strict=True)
+            if isinstance(key, ast.Constant) and isinstance(value, ast.Tuple) and len(value.elts) == 2
+        }
+        assert {name for name in named if (number, name) not in made} == set(), number
+
+
+def test_lessons_1_to_12_have_three_exercises_each():
+    expected = [f"{lesson}.{place}" for lesson in range(1, 13) for place in (1, 2, 3)]
+    assert ["0.1", *expected] == NUMBERS
+
+
+@pytest.mark.parametrize("path", LESSONS, ids=lambda path: path.stem)
+def test_stored_exercises_are_open_and_in_order(path):
+    lesson = int(path.name[:2])
+    found = list(cells_of(path))
+    assert [number for number, _ in found] == [number for number in NUMBERS if number.split(".")[0] == str(lesson)]
+    for number, cell in found:
+        assert "your code here" in cell.source or "your answer here" in cell.source, number
+        assert cell.outputs[-1].data["text/plain"] == OPEN
+        assert OPEN in cell.outputs[-1].data["text/html"]
+
+
+@pytest.mark.parametrize("path", LESSONS, ids=lambda path: path.stem)
+def test_exercise_names_are_not_used_by_the_lesson(path):
+    cells = [cell for cell in nbformat.read(path, as_version=4).cells if cell.cell_type == "code"]
+    own = {cell.source for _, cell in cells_of(path)}
+    rest = "\n".join(cell.source for cell in cells if cell.source not in own)
+    for number, cell in cells_of(path):
+        for name in re.findall(r"^(?:def )?(my_\w+)", cell.source, re.MULTILINE):
+            assert not re.search(rf"\b{name}\b", rest), (number, name)
+
+
+@pytest.mark.parametrize("number", NUMBERS)
+def test_solutions_do_not_stand_in_a_check(number):
+    """Neither its documentation nor anything it says shows a line of the solution."""
+    check = checks.EXERCISES[number]
+    lesson = int(number.split(".")[0])
+    code = [line.split("#")[0].strip() for line in solutions(lesson)[number].splitlines()]
+    telling = {line.removeprefix("return ") for line in code if len(line.removeprefix("return ")) > 12}
+    said = [check.__doc__, *check.hints]
+    said += [
+        repr(check(*given(answer))) for _, (answer, _) in (p.values for p in answers("WRONG") if p.values[0] == number)
+    ]
+    for line in telling - {line for line in telling if line.startswith(("def ", "import ", "from "))}:
+        assert not [text for text in said if line in text], line
+
+
+# ---- whatever an answer does ----------------------------------------------------------------------------------------
+
+
+def check_of(judge, tests=2):
+    return feedback.exercise("2.1", "a trial", tests=tests, hints=("general", "more concrete", "most concrete"))(judge)
+
+
+@check_of
+def doubled(function):
+    from hoverslam_lib.checks.answers import compare, number, repeatable
+
+    for x in (1.0, 3.0):
+        got = number(repeatable(function, x))
+        compare(got, 2 * x, f"for {x:g}", {"squared": (x**2, "You square; you should double.")})
+        yield
+
+
+def raises(x):
+    raise ValueError("the message of the student")
+
+
+def calls_itself(x):
+    return calls_itself(x)
+
+
+def never_ends(x):
+    while True:
+        pass
+
+
+def never_ends_and_catches(x):
+    while True:
+        with contextlib.suppress(BaseException):
+            x += 1
+
+
+BEHAVIOUR = {
+    "raises": (raises, r"raised ValueError: the message of the student in line \d+ of its cell"),
+    "calls itself": (calls_itself, "calls itself"),
+    "leaves": (lambda x: sys.exit(3), "raised SystemExit"),
+    "None": (lambda x: print(x), "return"),
+    "a string": (lambda x: "2.0 m", "should be a number; it is '2.0 m'"),
+    "a list": (lambda x: [x, x], r"shape \(2,\)"),
+    "nan": (lambda x: math.nan, "nan"),
+    "inf": (lambda x: math.inf, "inf"),
+    "a complex number": (lambda x: 2j * x, "should be a number"),
+    "itself": (lambda x: raises, "should be a number"),
+    "too many arguments": (lambda x, y: x, "raised TypeError"),
+    "not a function": (3.0, "raised TypeError"),
+}
+
+
+@pytest.mark.parametrize("behaviour", BEHAVIOUR)
+def test_answer_may_do_what_it_likes(behaviour, capsys):
+    function, expected = BEHAVIOUR[behaviour]
+    said = doubled(function)
+    assert re.search(expected, repr(said)), said
+    assert repr(said).startswith("✘ 0 of 2 — ")
+    assert "\n" not in repr(said)
+    assert capsys.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize("function", [never_ends, never_ends_and_catches])
+def test_answer_that_never_ends_is_stopped(function, monkeypatch):
+    monkeypatch.setattr(feedback, "TIME_LIMIT", 0.3)
+    start = time.perf_counter()
+    assert "was stopped after" in repr(doubled(function))
+    assert time.perf_counter() - start < 3
+
+
+def test_printing_answer_passes_without_a_word(capsys):
+    assert doubled(lambda x: (print("debugging"), 2 * x)[1]).done
+    assert capsys.readouterr().out == ""
+
+
+def test_answer_that_changes_its_arguments_or_remembers_is_told():
+    calls = []
+
+    def grows(x):
+        calls.append(x)
+        return 2 * x + len(calls) - 1
+
+    assert doubled(grows).mistake == "remembers its last call"
+
+    @check_of
+    def summed(function):
+        from hoverslam_lib.checks.answers import compare, repeatable
+
+        compare(repeatable(function, np.ones(3)), 3.0, "for ones")
+        yield
+        yield
+
+    def spoils(x):
+        x[0] = 5
+        return 3.0
+
+    assert summed(spoils).mistake == "changes its arguments"
+
+
+def test_hints_get_more_concrete_and_begin_again_after_success():
+    said = [repr(doubled(lambda x: 7.0)) for _ in range(4)]
+    assert [
+        "general" in said[0],
+        "more concrete" in said[1],
+        "most concrete" in said[2],
+        "most concrete" in said[3],
+    ] == [True] * 4
+    assert doubled(lambda x: 2 * x).done
+    assert "general" in repr(doubled(lambda x: 7.0))
+
+
+def test_named_mistake_gets_its_hint_and_no_other():
+    said = doubled(lambda x: x**2)
+    assert said.mistake == "squared"
+    assert repr(said) == "✘ 0 of 2 — You square; you should double."
+    assert doubled(lambda x: 2.0 if x == 1 else 9.0).passed == 1
+
+
+def test_untouched_stubs_are_open():
+    def dots(x): ...
+
+    def described(x):
+        """What to do."""
+        ...  # your code here
+
+    for answer in (dots, described, ...):
+        assert repr(doubled(answer)) == OPEN
+
+    def gives_none(x):
+        y = 2 * x  # noqa: F841
+
+    assert "return" in repr(doubled(gives_none))
+
+
+def test_feedback_is_escaped_and_readable_without_colour():
+    said = feedback.Feedback("2.1", 0, 2, "is 1 < 2?")
+    assert "1 &lt; 2" in said._repr_html_()
+    assert "✘ 0 of 2" in said._repr_html_()
+    assert "--jp-error-color1" in said._repr_html_()
+
+
+# ---- the record ----------------------------------------------------------------------------------------------------
+
+
+def test_progress_survives_a_restart_and_a_deleted_or_broken_record(tmp_path):
+    path = tmp_path / record.FILE
+    record.add("2.1")
+    record.add("2.3")
+    assert json.loads(path.read_text())["done"] == ["2.1", "2.3"]
+    assert "✔ 2.1" in repr(checks.progress())
+    assert "○ 2.2" in repr(checks.progress())
+    for broken in ("", "{", "[1, 2]", '{"done": 3}', '{"done": [1, null, "2.2"]}', "\x00\xff"):
+        path.write_text(broken, encoding="latin-1")
+        assert "exercises done" in repr(checks.progress())
+        record.add("2.1")
+        assert "✔ 2.1" in repr(checks.progress())
+    path.unlink()
+    assert repr(checks.progress()).startswith("0 of ")
+    assert list(tmp_path.glob(f"{record.FILE}?*")) == [], "no half-written files are left"
+
+
+def test_progress_is_kept_for_the_user_where_the_folder_cannot_be_written(tmp_path, monkeypatch):
+    monkeypatch.setattr(record, "_places", lambda: [tmp_path / "no" / "file", tmp_path / "user" / record.FILE])
+    (tmp_path / "no").write_text("a file, so nothing can be made in it")
+    record.add("2.1")
+    assert record.done() == {"2.1"}
+    monkeypatch.setattr(record, "_places", lambda: [tmp_path / "no" / "file"])
+    record.add("2.2")  # nowhere to write: nothing happens
+    assert record.done() == set()
+
+
+def test_solutions_can_be_shown_or_withheld(monkeypatch, tmp_path):
+    for number in NUMBERS:
+        assert "my_" in repr(checks.show_solution(number)), number
+    assert "lesson 2 has 2.1, 2.2, 2.3" in repr(checks.show_solution("2.7"))
+    monkeypatch.setattr(record, "SOLUTIONS", tmp_path / "withheld")
+    assert "ask your instructor" in repr(checks.show_solution("2.1"))
+    assert "ask your instructor" in repr(checks.show_solution(99))

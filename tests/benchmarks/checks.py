@@ -1,0 +1,62 @@
+"""How long a check of a right answer takes, for every exercise: ``python tests/benchmarks/checks.py``."""
+
+import contextlib
+import io
+import os
+import re
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import matplotlib as mpl
+import nbformat
+
+mpl.use("agg")
+
+from hoverslam_lib import checks, course, live  # noqa: E402
+from hoverslam_lib.checks import record  # noqa: E402
+
+LIMIT = 0.2
+
+
+def solved(path):
+    """The checks of a notebook called with their solutions, the cells before them run: (number, seconds)."""
+    live.Live.show = lambda self: None
+    names = {check.__name__: check.number for check in checks.EXERCISES.values()}
+    blocks = record.blocks((record.SOLUTIONS / f"lesson_{path.name[:2]}.py").read_text(encoding="utf-8"))
+    space = {"display": print, "__name__": "__main__"}
+    for cell in nbformat.read(path, as_version=4).cells:
+        if cell.cell_type != "code" or "raises-exception" in cell.metadata.get("tags", []):
+            continue
+        call = re.search(r"^checks\.(\w+)\((.*)\)", cell.source, re.MULTILINE)
+        if not call or call.group(1) not in names:
+            exec(cell.source, space)
+            continue
+        number = names[call.group(1)]
+        exec(blocks[number], space)
+        times = []
+        for _ in range(3):
+            start = time.perf_counter()
+            said = eval(call.group(0), space)
+            times.append(time.perf_counter() - start)
+            assert said.done, (number, said)
+        yield number, min(times)
+
+
+def main():
+    os.chdir(tempfile.mkdtemp())
+    slow = 0
+    for path in course.lessons():
+        if not Path(path).name[0].isdigit():
+            continue
+        with contextlib.redirect_stdout(io.StringIO()):
+            found = list(solved(path))
+        for number, seconds in found:
+            slow += seconds > LIMIT
+            print(f"{number:5} {1e3 * seconds:7.1f} ms {'' if seconds <= LIMIT else f'more than {LIMIT} s'}")
+    return slow
+
+
+if __name__ == "__main__":
+    sys.exit(main() > 0)

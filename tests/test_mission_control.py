@@ -1,0 +1,118 @@
+"""The instructor's page without a browser: its buttons, its table, and what it flies."""
+
+import base64
+import io
+import re
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+import pytest
+
+from hoverslam_lib import EARTH, Descent, best_ignition, fly, hover_height, plotting, published
+from hoverslam_lib.mission_control import START, STEPS, MissionControl, try_out
+
+
+@pytest.fixture(scope="module")
+def page():
+    with plt.rc_context():
+        plotting.use_style()
+        made = MissionControl()
+    yield made
+    made.live.close()
+
+
+@pytest.fixture(autouse=True)
+def _reset(page):
+    page.clear()
+    page.reset()
+
+
+def test_reset_puts_every_control_back(page):
+    page.live.set(coarse=10.0, fine=3.0, planet="Moon", methods=("dop8", "rk4"), thrust=2.0)
+    page.reset()
+    assert {name: control.value for name, control in page.live.controls.items()} == START
+
+
+def test_optimum_is_found_to_the_microsecond_for_the_descent_that_is_set(page):
+    page.find()
+    assert "soft landing" in page.live.text
+    page.live.set(planet="Mars", thrust=9.0, drag=1.0)
+    page.find()
+    descent = page._descent(**page._values())
+    t = page.live.controls["coarse"].value + page.live.controls["fine"].value / 1e3
+    assert t == pytest.approx(best_ignition(descent).t_ignite, abs=1e-6)
+    assert abs(hover_height(descent, t)) < 0.01
+
+
+def test_no_soft_landing_is_explained_and_changes_nothing(page):
+    page.live.set(thrust=0.2)
+    page.find()
+    assert "No soft landing: thrust must exceed" in page.live.message.value
+    assert page.live.controls["coarse"].value == START["coarse"]
+
+
+def test_trial_is_what_fly_says():
+    trial = try_out(Descent(), 60.3, 0.05, "rk4")
+    flown = fly(Descent(), 60.3, dt=0.05)
+    np.testing.assert_allclose(trial["v"], flown.v, atol=1e-9)
+    np.testing.assert_allclose(trial["felt"], flown.felt_acceleration, rtol=1e-9)
+    assert trial["thrust"].max() == 7.6e6
+    assert trial["height"] == pytest.approx(hover_height(Descent(), 60.3, dt=0.05))
+
+
+def test_published_trial_has_the_papers_landing_and_its_vanishing_mass():
+    trial = try_out(Descent(), 35.88, 0.02, "rkn4", True)
+    run = published.fly(35.88, dt=0.02)
+    assert np.array_equal(trial["h"], run.h)
+    assert trial["verdict"] == "comes to 0 m/s 2.6 m above the ground"
+    assert trial["mass"].min() == pytest.approx(-7.4e3, abs=100)
+    assert np.all(trial["thrust"][run.t > 36] == -7.6e3)
+    # what is felt is what changes the velocity, gravity left out
+    slope = np.gradient(run.v, run.t) + EARTH.gravity(run.h)
+    middle = slice(1000, 1700)
+    np.testing.assert_allclose(trial["felt"][middle], slope[middle], atol=1e-3)
+
+
+def test_published_equation_on_another_planet_says_what_to_do(page):
+    page.live.set(faults=True, planet="Moon")
+    assert "press Reset" in page.live.text
+    page.live.set(faults=True, planet="Earth")
+    assert "m/s" in page.live.text
+
+
+def test_trials_are_kept_listed_and_given_as_csv(page):
+    page.keep()
+    page.live.set(coarse=60.3, methods=("rk4", "dop8"))
+    page.keep()
+    frame = page.to_frame()
+    assert list(frame["method"]) == ["rk4", "rk4", "dop8"]
+    assert frame["hover height [m]"].tolist() == pytest.approx([12.7, -102, -102], rel=0.01)
+    data = re.search(r"base64,([A-Za-z0-9+/=]+)", page.table.value).group(1)
+    read = pd.read_csv(io.BytesIO(base64.b64decode(data)))
+    pd.testing.assert_frame_equal(read, frame)
+    for _ in range(10):
+        page.keep()
+    assert len(page.to_frame()) == 12
+    page.clear()
+    assert page.table.value == ""
+
+
+def test_steps_are_round_and_nearly_even_on_a_logarithmic_scale():
+    assert STEPS[0] == 0.005
+    assert STEPS[-1] == 1.0
+    assert 0.02 in STEPS
+    ratios = np.diff(np.log(STEPS))
+    assert ratios.max() < 0.35
+    assert ratios.min() > 0.1
+
+
+def test_moment_puts_the_dots_on_the_flight(page):
+    page.live.set(moment=50)
+    before, _, dot = page.lines["rk4"][0]
+    (t,), (h,) = dot.get_data()
+    trial = try_out(Descent(), 60.2, 0.02, "rk4")
+    assert t == pytest.approx(trial["t"][-1] / 2, abs=0.02)
+    assert h == pytest.approx(np.interp(t, trial["t"], trial["h"]) / 1e3)
+    assert len(before.get_xdata()) == trial["end"]
+    assert len(page.lines["dop8"][0][0].get_xdata()) == 0, "a method that is not chosen is not drawn"

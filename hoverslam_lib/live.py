@@ -80,8 +80,7 @@ class Live:
 
     def close(self):
         """Take the controls and the picture out of the page and of memory."""
-        for widget in (*self.controls.values(), self.message, self.picture, self.widget):
-            widget.close()
+        _close(self.widget)
 
     def _follow(self, change=None):
         try:
@@ -134,6 +133,14 @@ def _encoded(pixels):
     packed = io.BytesIO()
     Pixels.fromarray(pixels).convert("RGB").save(packed, format="png", compress_level=1, compress_type=zlib.Z_RLE)
     return packed.getvalue()
+
+
+def _close(widget):
+    for child in getattr(widget, "children", ()):
+        _close(child)
+    for part in (widget.layout, getattr(widget, "style", None), widget):
+        if part is not None:
+            part.close()
 
 
 def _close_former_run(live):

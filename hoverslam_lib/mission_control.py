@@ -21,6 +21,7 @@ from ipywidgets import (
     Play,
     SelectionSlider,
     SelectMultiple,
+    ToggleButton,
     VBox,
     jslink,
 )
@@ -157,7 +158,7 @@ class MissionControl:
             control.value = START[name]
             control.layout.width = "100%"
         self.live = Live(self._figure(), self._fly, **controls)
-        self.table, self.play = HTML(), Play(100, min=0, max=100, step=2, interval=120, description="play the flight")
+        self.table, self.play = HTML(), Play(100, min=0, max=100, step=2, interval=120, layout=Layout(display="none"))
         jslink((self.play, "value"), (controls["moment"], "value"))
         self.live.widget = self._layout(controls)
 
@@ -246,7 +247,9 @@ class MissionControl:
             button.on_click(act)
             buttons.append(button)
         left = VBox([controls[name] for name in ("coarse", "fine", "dt", "thrust", "drag")])
-        moment = HBox([controls["moment"], self.play])
+        play = ToggleButton(description="Play", tooltip="play or pause the flight", layout=Layout(width="6em"))
+        jslink((play, "value"), (self.play, "playing"))  # Play's own buttons have no names
+        moment = HBox([controls["moment"], play, self.play])
         right = VBox([controls["planet"], controls["methods"], controls["faults"], moment])
         panel = GridBox([left, right], layout=Layout(grid_template_columns="50% 50%", max_width="980px"))
         return VBox([panel, HBox(buttons), self.live.message, self.live.picture, self.table])

@@ -127,7 +127,7 @@ def test_live_figure_leaves_no_open_figure_and_close_frees_its_widgets():
         made = Live(fig, lambda x: "text 1", x=FloatSlider(1.0))
         assert plt.get_fignums() == []
         made.close()
-    assert len(live_widgets()) <= before + 3 * 6, "styles and layouts are all that may be left"
+    assert len(live_widgets()) == before
 
 
 def live_widgets():

@@ -30,6 +30,11 @@ IDLE = """() => {
     const session = window.jupyterapp.shell.currentWidget?.sessionContext?.session;
     return session?.kernel?.connectionStatus === 'connected' && session.kernel.status === 'idle';
 }"""
+CLOSE = """async () => {
+    const notebook = window.jupyterapp.shell.currentWidget;
+    await notebook.sessionContext.shutdown();
+    notebook.dispose();
+}"""
 OUTPUTS = """() => {
     const cells = window.jupyterapp.shell.currentWidget.content.model.cells;
     const found = {errors: [], cells: 0, run: 0};
@@ -46,13 +51,20 @@ OUTPUTS = """() => {
 }"""
 
 
+class NoBrowser(Exception):
+    """There is no Chromium to drive."""
+
+
 @contextlib.contextmanager
 def browser():
-    """A Chromium."""
+    """A Chromium: the system's, or else the one that ``playwright install chromium`` brings."""
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
-        chromium = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        path = CHROMIUM or playwright.chromium.executable_path
+        if not Path(path).exists():
+            raise NoBrowser("a Chromium is missing: playwright install chromium")
+        chromium = playwright.chromium.launch(executable_path=path, args=FLAGS)
         try:
             yield chromium
         finally:
@@ -90,12 +102,24 @@ def server(application, folder, config):
         running.wait(30)
 
 
-def open_notebook(page, address, name):
-    """Open a notebook in JupyterLab and wait for its kernel."""
-    page.goto(f"{address}/lab/tree/{name}?token={TOKEN}&reset")
+def open_lab(page, address):
+    """Load JupyterLab, with nothing open."""
+    page.goto(f"{address}/lab?token={TOKEN}&reset")
+    page.wait_for_function("() => window.jupyterapp?.commands.hasCommand('docmanager:open')", timeout=60_000)
+    page.evaluate("async () => { await window.jupyterapp.restored; }")
+    page.evaluate("() => window.jupyterapp.commands.execute('application:toggle-left-area')")
+
+
+def open_notebook(page, name):
+    """Open a notebook and wait for its kernel."""
+    page.evaluate("async path => void (await window.jupyterapp.commands.execute('docmanager:open', {path}))", name)
     page.wait_for_selector(".jp-Notebook .jp-Cell", timeout=60_000)
     page.wait_for_function(IDLE, timeout=60_000)
-    page.evaluate("() => window.jupyterapp.commands.execute('application:toggle-left-area')")
+
+
+def close_notebook(page):
+    """End the kernel and close the notebook, unsaved."""
+    page.evaluate(CLOSE)
 
 
 def run_all(page, timeout=180):

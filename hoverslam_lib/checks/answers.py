@@ -7,25 +7,17 @@ from hoverslam_lib.checks.feedback import Wrong
 
 def number(value, name="the result"):
     """A finite float, or `Wrong` with what it is instead."""
-    if value is None:
-        raise Wrong(f"{_start(name)} is None: is a `return` missing?")
-    if isinstance(value, str | bytes | bool | dict | set) or callable(value):
-        raise Wrong(f"{_start(name)} should be a number; it is {_shown(value)}.")
-    try:
-        array = np.asarray(value, dtype=float)
-    except (TypeError, ValueError):
-        raise Wrong(f"{_start(name)} should be a number; it is {_shown(value)}.") from None
-    if array.size != 1:
-        raise Wrong(f"{_start(name)} should be one number; it has the shape {array.shape}.")
-    if not np.isfinite(array).all():
-        raise Wrong(f"{_start(name)} is {array.item()}: is something divided by 0?")
-    return float(array.item())
+    made = _floats(value, name, "a number")
+    if made.size != 1:
+        raise Wrong(f"{_start(name)} should be one number; it has the shape {made.shape}.")
+    if not np.isfinite(made).all():
+        raise Wrong(f"{_start(name)} is {made.item()}, which is not a finite number.")
+    return float(made.item())
 
 
 def pair(value, names=("h", "v")):
     """Two finite floats, such as the (h, v) of a step."""
-    if value is None:
-        raise Wrong("The result is None: is a `return` missing?")
+    _require_something(value, "the result")
     try:
         first, second = value
     except (TypeError, ValueError):
@@ -35,16 +27,11 @@ def pair(value, names=("h", "v")):
 
 def array(value, shape, name="the result"):
     """An array of finite floats of a given shape."""
-    if value is None:
-        raise Wrong(f"{_start(name)} is None: is a `return` missing?")
-    try:
-        made = np.asarray(value, dtype=float)
-    except (TypeError, ValueError):
-        raise Wrong(f"{_start(name)} should be an array of numbers; it is {_shown(value)}.") from None
+    made = _floats(value, name, "an array of numbers")
     if made.shape != tuple(shape):
         raise Wrong(f"{_start(name)} should have the shape {tuple(shape)}; it has {made.shape}.")
     if not np.isfinite(made).all():
-        raise Wrong(f"{_start(name)} holds nan or inf: is something divided by 0?")
+        raise Wrong(f"{_start(name)} holds nan or inf, which are not finite numbers.")
     return made
 
 
@@ -109,12 +96,27 @@ def takes(function, *names):
     return function
 
 
+def _floats(value, name, wanted):
+    _require_something(value, name)
+    try:
+        if isinstance(value, bool | dict | set) or np.asarray(value).dtype.kind in "USb":
+            raise TypeError
+        return np.asarray(value, dtype=float)
+    except (TypeError, ValueError):
+        raise Wrong(f"{_start(name)} should be {wanted}; it is {_shown(value)}.") from None
+
+
+def _require_something(value, name):
+    if value is None:
+        raise Wrong(f"{_start(name)} is None{': is a `return` missing?' if 'result' in name else '.'}")
+
+
 def _start(name):
-    return name[0].upper() + name[1:]
+    return name if name.startswith("my_") else name[0].upper() + name[1:]
 
 
 def _shown(value):
-    text = repr(value)
+    text = " ".join(repr(value).split())
     return text if len(text) <= 40 else f"{text[:37]}…"
 
 

@@ -1,0 +1,126 @@
+"""Answers that students give to the exercises of lesson 12."""
+
+import math
+
+import numpy as np
+
+LOWEST = 108_300 / 190_000
+
+
+def _drag(h, v):
+    return 0.25 * 1.3 * math.exp(-h / 8400) * math.pi * 1.83**2 * v * v
+
+
+def _throttle(a, h, v, mass):
+    return min(max((mass * (a + 9.798) - _drag(h, v)) / 845e3, LOWEST), 1.0)
+
+
+def _lessons(t, h, v, mass, v_td=1.0, least=0.01):
+    from hoverslam_lib import LANDING_BURN
+
+    speed = max(-v, 0.0)
+    a = (speed**2 - v_td**2) / (2 * max(h, least))
+    wanted = mass * (a + LANDING_BURN.planet.gravity(0.0)) - LANDING_BURN.drag(h, v)
+    return min(max(wanted / 845e3, LOWEST), 1.0)
+
+
+def _switch(t, h, v, mass, share=1.0):
+    return 1.0 if v * v / 2 / (share * 845e3 / mass - 9.8) >= h else LOWEST
+
+
+def _gentle(t, h, v, mass):
+    return _throttle((v * v - 1) / (2 * max(h, 3.0)), h, v, mass)
+
+
+def _tracks(t, h, v, mass):
+    """Far up the lesson's law, near the ground a velocity for each height."""
+    if h > 25:
+        return _throttle((v * v - 1.3**2) / (2 * h), h, v, mass)
+    wanted = -np.sqrt(1.3**2 + 2 * 10.5 * np.maximum(h, 0))
+    return np.float64(_throttle(10.5 + 4.5 * (wanted - v), h, v, mass))
+
+
+def _gated(t, h, v, mass, gate=60.0, a=10.0, end=1.3):
+    if h > gate + 1:
+        return (mass * ((v * v - end**2 - 2 * a * gate) / 2 / (h - gate) + 9.8) - _drag(h, v)) / 845e3
+    off = math.sqrt(end**2 + 2 * a * abs(h)) + v
+    return (mass * (a - 4 * off + 9.8) - _drag(h, v)) / 845e3
+
+
+def _blend(h, v, a, dt, h_seen, v_seen, trust):
+    he, ve = h + dt * (v + a * dt / 2), v + a * dt
+    return (1 - trust) * he + trust * h_seen, (1 - trust) * ve + trust * v_seen
+
+
+def _mix(a, b, trust):
+    return a + trust * (b - a)
+
+
+WRONG = {
+    "12.1": [
+        ((134.4, 3063), "all of it halved"),
+        ((133, 3000), "drag taken away"),
+        ((152, 3460), "half the drag taken away"),
+        ((362, 8250), "added, not squared"),
+        ((212, 4830), "square half"),
+        ((31_556, 4000), "no root"),
+        ((178, 6126), "as before"),
+        ((178, 0.00025), "share"),
+        ((178, 1615), "no bell"),
+        ((178, 10_150), "two pi"),
+        ((269, 6000), None),
+        ((218, 4970), None),
+        ((178, 0.4), None),
+        (("178 m", 4000), None),
+    ],
+    "12.2": [
+        (lambda h, v, a, dt, hs, vs, k: _blend(h, v, a, dt, hs, vs, 1 - k), "trust upside down"),
+        (lambda h, v, a, dt, hs, vs, k: (_mix(h, hs, k), _mix(v, vs, k)), "nothing expected"),
+        (lambda h, v, a, dt, hs, vs, k: (_mix(h + v * dt, hs, k), _mix(v + a * dt, vs, k)), "no acceleration in h"),
+        (
+            lambda h, v, a, dt, hs, vs, k: (_mix(h + (v + a * dt) * dt, hs, k), _mix(v + a * dt, vs, k)),
+            "new v in the move",
+        ),
+        (lambda h, v, a, dt, hs, vs, k: (h + v * dt + a * dt**2 / 2, v + a * dt), "only expected"),
+        (lambda h, v, a, dt, hs, vs, k: (_blend(h, v, a, dt, hs, vs, k)[0], v + a * dt), "only h mixed"),
+        (
+            lambda h, v, a, dt, hs, vs, k: (_mix(h + v * dt + a * dt**2, hs, k), _mix(v + a * dt, vs, k)),
+            "new v in the move",
+        ),
+        (lambda h, v, a, dt, hs, vs, k: (_mix(h + v * dt - a * dt**2 / 2, hs, k), _mix(v - a * dt, vs, k)), None),
+        (lambda h, v, a, dt, hs, vs, k: (h + k * hs, v + k * vs), None),
+        (lambda h, v, a, dt, hs, vs, k: (h + v * dt + a * dt**2 / 2, _mix(v + a * dt, vs, k)), None),
+        (lambda h, v, a, dt, hs, vs, k: (hs, vs), None),
+        (lambda h, v, a, dt, hs, vs, k: ((h + hs) / 2, (v + vs) / 2), None),
+        (lambda h, v, a, dt, hs, vs, k: _blend(h, v, a, dt, hs, vs, k)[0], None),
+        (lambda h, v, a, dt, hs, vs, k: _blend(h, v, a, dt, hs, vs, k)[::-1], None),
+    ],
+    "12.3": [
+        (lambda t, h, v, mass: 0.7, "constant throttle"),
+        (lambda t, h, v, mass: 1.0, "constant throttle"),
+        (_switch, "on and off"),
+        (lambda *a: _switch(*a, share=0.75), "on and off"),
+        (_lessons, "the lesson's law"),
+        (lambda *a: _lessons(*a, v_td=1.5), None),
+        (lambda *a: _lessons(*a, least=0.5), None),
+        (_gentle, None),
+        (lambda t, h, v, mass: -v / 400, None),
+        (lambda t, h, v, mass: 0.7 + 0.01 * (-v - math.sqrt(2 * 10 * max(h, 0))), None),
+        (lambda t, h, v, mass: _throttle(v * v / (2 * h), h, v, mass), None),
+        (lambda t, h, v, mass: _lessons(t, h, v, mass) if h > 2 else LOWEST, None),
+        (lambda t, h, v, mass: _lessons(t, h, v, 30e3), None),
+        (lambda t, h, v, mass: 0.6 if h > 1000 else 0.8, None),
+        (lambda t, h, v, mass: mass * 9.8 / 845e3 * v**2 / (2 * h), None),
+        (lambda t, h, v, mass: math.sqrt(v), None),
+        (lambda *a: 100 * _lessons(*a), "in per cent"),
+        (lambda *a: 1e6 * _lessons(*a), None),
+        (lambda t, h, v, mass: print(0.7), None),
+        (lambda t, h, v, mass: f"{_tracks(t, h, v, mass):.2f}", None),
+    ],
+}
+
+RIGHT = {
+    "12.1": [(178, 4000), (177.6, 4048), (np.sqrt(31_556), 4_050)],
+    "12.2": [_blend, lambda *a: np.array(_blend(*a)), lambda *a: list(_blend(*a))],
+    "12.3": [_tracks, _gated, lambda *a: np.array([_gated(*a, gate=30.0)])],
+}

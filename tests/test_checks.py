@@ -93,7 +93,12 @@ def test_every_named_mistake_is_made_by_some_wrong_answer(number):
     """A hint that no answer of ours calls forth was never read."""
     made = {param.values[1][1] for param in answers("WRONG") if param.values[0] == number}
     tree = ast.parse(textwrap.dedent(inspect.getsource(checks.EXERCISES[number].judge)))
-    pairs = [pair for node in ast.walk(tree) if isinstance(node, ast.Dict) for pair in zip(node.keys, node.values)]
+    pairs = [
+        pair
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Dict)
+        for pair in zip(node.keys, node.values, strict=True)
+    ]
     named = {key.value for key, value in pairs if isinstance(value, ast.Tuple) and isinstance(key, ast.Constant)}
     raised = [node for node in ast.walk(tree) if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "Wrong"]
     named |= {call.args[1].value for call in raised if len(call.args) > 1 and isinstance(call.args[1], ast.Constant)}

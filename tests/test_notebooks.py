@@ -7,8 +7,9 @@ import pytest
 
 from hoverslam_lib import course
 
-LESSONS = course.lessons()
-PAGES = [*LESSONS, *sorted(course.NOTEBOOKS.glob("*.md")), course.NOTEBOOKS.parent / "README.md"]
+NOTEBOOKS = course.lessons()
+LESSONS = [path for path in NOTEBOOKS if path.name[0].isdigit()]
+PAGES = [*NOTEBOOKS, *sorted(course.NOTEBOOKS.glob("*.md")), course.NOTEBOOKS.parent / "README.md"]
 
 
 def prose(path):
@@ -32,8 +33,8 @@ def code(source, count=2, **output):
     return nbformat.v4.new_code_cell(source, execution_count=count, outputs=outputs)
 
 
-@pytest.mark.parametrize("path", LESSONS, ids=lambda path: path.stem)
-def test_lesson_is_stored_in_order(path):
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_notebook_is_stored_in_order(path):
     assert course.problems(path) == []
 
 
@@ -48,7 +49,7 @@ def test_lesson_has_its_parts(path):
     assert "(glossary.md)" in text.split("##")[0]
 
 
-@pytest.mark.parametrize("path", LESSONS, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_no_line_of_a_formula_or_sentence_is_taken_for_a_list(path):
     """Markdown makes a list item of a line that begins with a plus or minus, and a quotation of one with a >."""
     for cell in nbformat.read(path, as_version=4).cells:

@@ -25,6 +25,7 @@ ORDER = [
     "plotting",
     "animation",
     "live",
+    "mission_control",
     "checks",
     "course",
 ]

@@ -9,7 +9,7 @@ def number(value, name="the result"):
     """A finite float, or `Wrong` with what it is instead."""
     made = _floats(value, name, "a number")
     if made.size != 1:
-        raise Wrong(f"{_start(name)} should be one number; it has the shape {made.shape}.")
+        raise Wrong(f"{_start(name)} should be one number; it holds {_amount(made.shape)}.")
     if not np.isfinite(made).all():
         raise Wrong(f"{_start(name)} is {made.item()}, which is not a finite number.")
     return float(made.item())
@@ -29,7 +29,7 @@ def array(value, shape, name="the result"):
     """An array of finite floats of a given shape."""
     made = _floats(value, name, "an array of numbers")
     if made.shape != tuple(shape):
-        raise Wrong(f"{_start(name)} should have the shape {tuple(shape)}; it has {made.shape}.")
+        raise Wrong(f"{_start(name)} should hold {_amount(shape)}; it holds {_amount(made.shape)}.")
     if not np.isfinite(made).all():
         raise Wrong(f"{_start(name)} holds nan or inf, which are not finite numbers.")
     return made
@@ -108,7 +108,13 @@ def _floats(value, name, wanted):
 
 def _require_something(value, name):
     if value is None:
-        raise Wrong(f"{_start(name)} is None{': is a `return` missing?' if 'result' in name else '.'}")
+        raise Wrong(f"{_start(name)} is None{'.' if name.startswith('my_') else ': is a `return` missing?'}")
+
+
+def _amount(shape):
+    if len(shape) < 2:
+        return "one number" if shape in ((), (1,)) else f"{shape[0]} numbers"
+    return " × ".join(str(n) for n in shape) + " numbers"
 
 
 def _start(name):

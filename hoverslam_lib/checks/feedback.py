@@ -15,7 +15,8 @@ from hoverslam_lib.checks import record
 TIME_LIMIT = 5.0
 """A check takes no longer than this [s]."""
 
-_tries = Counter()
+_tries = Counter()  # by exercise: how many different answers got a general hint
+_last = {}  # by exercise: what was answered last
 
 
 class Wrong(Exception):
@@ -112,13 +113,21 @@ class Exercise:
         passed, wrong = _judged(self.judge, answers)
         if wrong is None and passed == self.tests:
             _tries[self.number] = 0
+            _last.pop(self.number, None)
             record.add(self.number)
             return Feedback(self.number, passed, self.tests)
         hint = wrong.what
         if wrong.nudge:
-            hint = f"{hint} {self.hints[min(_tries[self.number], len(self.hints) - 1)]}"
-        _tries[self.number] += 1
+            hint = f"{hint} {self._general_hint(answers)}"
         return Feedback(self.number, passed, self.tests, hint, wrong.mistake)
+
+    def _general_hint(self, answers):
+        """The next one, unless the same answer is tried again."""
+        told = [_told_apart(answer) for answer in answers]
+        if self.number in _last and _last[self.number] != told:
+            _tries[self.number] += 1
+        _last[self.number] = told
+        return self.hints[min(_tries[self.number], len(self.hints) - 1)]
 
 
 def exercise(number, title, *, tests, hints):
@@ -140,6 +149,11 @@ def _untouched(answer):
         return answer is ...
     empty = (_stub.__code__.co_code, _described_stub.__code__.co_code)
     return code.co_code in empty and not code.co_names and code.co_consts[-1] is None
+
+
+def _told_apart(answer):
+    code = getattr(answer, "__code__", None)
+    return (code.co_code, repr(code.co_consts), code.co_names) if code else repr(answer)
 
 
 def _judged(judge, answers):

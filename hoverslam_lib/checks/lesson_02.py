@@ -20,7 +20,7 @@ from hoverslam_lib.trajectory import integrate
 )
 def energy_factor(factor):
     takes(factor, "omega", "dt", "n")
-    for omega, dt, n in ((1.0, 0.1, 1), (1.0, 0.1, 50), (2.0, 0.1, 50), (3.0, 0.05, 200)):
+    for omega, dt, n in ((2.0, 0.1, 3), (1.0, 0.1, 50), (3.0, 0.05, 200), (0.5, 0.2, 1)):
         growth = 1 + omega**2 * dt**2
         mistakes = {
             "dt not squared": ((1 + omega**2 * dt) ** n, "Nearly: look again at the power of dt in the law."),
@@ -28,20 +28,23 @@ def energy_factor(factor):
             "amplitude": (growth ** (n / 2), "That is by how much the swing grows. Energy goes with its square."),
             "added up": (1 + n * omega**2 * dt**2, "You add n times. Each step multiplies what the last one left."),
             "one step": (growth, "That is the factor of one step. What do n of them make?"),
+            "one step too few": (growth ** (n - 1), "Count the steps once more: is there one missing?"),
+            "growth alone": (growth**n - 1, "That is what is added. The factor is what all of it is multiplied by."),
+            "per cent": (100 * growth**n, "A factor, please: 2 if the energy doubles, not 200."),
         }
         got = number(repeatable(factor, omega, dt, n))
         compare(got, growth**n, f"for ω = {omega:g} rad/s, dt = {dt:g} s, n = {n}", mistakes)
         yield
 
 
-def _run(x, v, dt, n, *, new_x=False, new_v=False, samples=None):
+def _run(x, v, dt, n, *, new_x=False, new_v=False, sign=1, samples=None):
     """Positions of explicit Euler on the spring, or what its usual slips make of them."""
     xs = [x]
     for _ in range(n):
-        a = -x
+        a = -sign * x
         x_new = x + dt * v
         if new_x:
-            a = -x_new
+            a = -sign * x_new
         v_new = v + dt * a
         if new_v:
             x_new = x + dt * v_new
@@ -56,13 +59,15 @@ def _run(x, v, dt, n, *, new_x=False, new_v=False, samples=None):
     tests=4,
     hints=(
         "Do two steps by hand, from x = 3 and v = 0, and hold the list against them.",
-        "How many numbers does the list have for n = 1? And which x does each line of the loop use?",
+        "Take the lines of the loop one by one: which x and which v does each of them use, the old or the new?",
     ),
 )
 def mended_run(run):
     takes(run, "x", "v", "dt", "n")
-    for x, v, dt, n in ((3.0, -1.0, 0.1, 1), (3.0, 0.0, 0.1, 2), (1.0, -2.0, 0.2, 7), (0.5, 1.0, 0.05, 40)):
+    for x, v, dt, n in ((3.0, -1.0, 0.1, 3), (3.0, 0.0, 0.1, 2), (1.0, -2.0, 0.2, 7), (0.5, 1.0, 0.05, 40)):
         got = repeatable(run, x, v, dt, n)
+        if n > 1 and np.ndim(got) == 1 and len(got) == 2:
+            raise Wrong("The list ends after one step: where does the `return` stand?", "return in the loop")
         length = len(got) if hasattr(got, "__len__") else None
         for samples, mistake, hint in (
             (slice(None, -1), "one step short", "The list ends one step too early: n steps make n + 1 samples."),
@@ -71,6 +76,10 @@ def mended_run(run):
             if length == n and np.allclose(array(got, (n,)), _run(x, v, dt, n, samples=samples)):
                 raise Wrong(hint, mistake)
         mistakes = {
+            "push has the wrong sign": (
+                _run(x, v, dt, n, sign=-1),
+                "Your spring pushes the weight away. Which way does it pull?",
+            ),
             "new x in the push": (
                 _run(x, v, dt, n, new_x=True),
                 "Your push is taken at the new x. Which x is explicit?",
@@ -86,13 +95,13 @@ def mended_run(run):
     "a better answer from two poor ones",
     tests=5,
     hints=(
-        "Write down exact = coarse + C·dt^p and exact = fine + C·(dt/2)^p, and get rid of C.",
-        "Multiply the second equation by 2^p and subtract the first; then divide.",
+        "Write the supposition down twice, for the coarse answer and for the fine one: two equations, two unknowns.",
+        "With E for the exact answer: coarse = E + C·dt^p, and fine = E + C·(dt/2)^p. Which combination has no C?",
     ),
 )
 def extrapolated(combine):
     takes(combine, "coarse", "fine", "order")
-    for coarse, fine, p in ((1.0, 2.0, 1), (5.0, 4.0, 3), (10.0, 10.5, 4)):
+    for coarse, fine, p in ((1.0, 2.5, 1), (5.0, 4.0, 3), (10.0, 10.5, 4)):
         right = (2**p * fine - coarse) / (2**p - 1)
         mistakes = {
             "swapped": ((2**p * coarse - fine) / (2**p - 1), "You trust the coarse answer more than the fine one."),

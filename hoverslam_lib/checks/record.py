@@ -9,10 +9,8 @@ from pathlib import Path
 
 import platformdirs
 
-from hoverslam_lib.course import NOTEBOOKS
-
 FILE = ".hoverslam_progress.json"
-SOLUTIONS = NOTEBOOKS / "solutions"
+SOLUTIONS = Path(__file__).resolve().parents[2] / "notebooks" / "solutions"
 
 
 class Page:

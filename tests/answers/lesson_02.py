@@ -22,6 +22,22 @@ def _moves_with_the_new_velocity(x, v, dt, n):
     return xs
 
 
+def _returns_too_early(x, v, dt, n):
+    xs = [x]
+    for _ in range(n):
+        x, v = x + dt * v, v - dt * x
+        xs.append(x)
+        return xs
+
+
+def _pushes_away(x, v, dt, n):
+    xs = [x]
+    for _ in range(n):
+        x, v = x + dt * v, v + dt * x
+        xs.append(x)
+    return xs
+
+
 def _in_an_array(x, v, dt, n):
     xs = np.full(n + 1, x)
     for i in range(n):
@@ -37,6 +53,9 @@ WRONG = {
         (lambda omega, dt, n: (1 + omega**2 * dt**2) ** (n / 2), "amplitude"),
         (lambda omega, dt, n: 1 + n * omega**2 * dt**2, "added up"),
         (lambda omega, dt, n: 1 + omega**2 * dt**2, "one step"),
+        (lambda omega, dt, n: (1 + omega**2 * dt**2) ** (n - 1), "one step too few"),
+        (lambda omega, dt, n: (1 + omega**2 * dt**2) ** n - 1, "growth alone"),
+        (lambda omega, dt, n: 100 * (1 + omega**2 * dt**2) ** n, "per cent"),
         (lambda omega, dt, n: (1 - omega**2 * dt**2) ** n, None),
         (lambda omega, dt, n: np.exp(n * omega**2 * dt**2), None),
         (lambda omega, dt, n: print((1 + omega**2 * dt**2) ** n), None),
@@ -46,6 +65,8 @@ WRONG = {
         (lambda x, v, dt, n: _run(x, v, dt, n, last=-1), "one step short"),
         (lambda x, v, dt, n: _run(x, v, dt, n, first=1), "start is missing"),
         (lambda x, v, dt, n: _run(x, v, dt, n - 1, old=False), "one step short"),
+        (_returns_too_early, "return in the loop"),
+        (_pushes_away, "push has the wrong sign"),
         (_moves_with_the_new_velocity, "new v in the move"),
         (lambda x, v, dt, n: _run(x, v, dt, n)[-1], None),
         (lambda x, v, dt, n: None, None),
@@ -57,6 +78,7 @@ WRONG = {
         (lambda coarse, fine, order: 2 * fine - coarse, "order 1 always"),
         (lambda c, f, p: (p * f - c) / (p - 1) if p > 1 else 2 * f - c, "p for 2^p"),
         (lambda coarse, fine, order: fine, None),
+        (lambda coarse, fine, order: fine - coarse / 2**order, None),
         (lambda coarse, fine, order: float((2**order * fine - coarse) / (2**order - 1)), None),
     ],
 }

@@ -64,7 +64,7 @@ WRONG = {
         (lambda x, v, dt, n: _run(x, v, dt, n, old=False), "new x in the push"),
         (lambda x, v, dt, n: _run(x, v, dt, n, last=-1), "one step short"),
         (lambda x, v, dt, n: _run(x, v, dt, n, first=1), "start is missing"),
-        (lambda x, v, dt, n: _run(x, v, dt, n - 1, old=False), "one step short"),
+        (lambda x, v, dt, n: _run(x, v, dt, n - 1, old=False), None),
         (_returns_too_early, "return in the loop"),
         (_pushes_away, "push has the wrong sign"),
         (_moves_with_the_new_velocity, "new v in the move"),

@@ -5,11 +5,13 @@ import io
 import math
 import zlib
 
+import anywidget
 import matplotlib.pyplot as plt
 import numpy as np
+import traitlets
 from IPython import get_ipython
 from IPython.display import display
-from ipywidgets import HTML, Image, Layout, VBox
+from ipywidgets import Image, Layout, VBox
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from PIL import Image as Pixels
 
@@ -19,6 +21,40 @@ from hoverslam_lib.plotting import Picture, _png
 STILL = "Run this cell to make it live."
 
 _SHOWN = {}  # by cell and run: so that a cell run again takes its former figure out of memory
+
+
+class Message(anywidget.AnyWidget):
+    """The sentence above the picture, which screen readers speak when it changes.
+
+    It also gives the picture its alternative text and every slider the name that its label shows, because ipywidgets
+    gives neither.
+    """
+
+    _esm = """
+    function name(el, text) {
+        const figure = el.closest(".hoverslam-live");
+        figure?.querySelector("img.widget-image")?.setAttribute("alt", text);
+        for (const control of figure?.querySelectorAll(".widget-slider") ?? []) {
+            const label = control.querySelector(".widget-label").innerText;
+            for (const part of control.querySelectorAll("[role=slider], .widget-readout"))
+                part.setAttribute("aria-label", label);
+        }
+    }
+    export default {
+        render({ model, el }) {
+            el.setAttribute("role", "status");
+            const say = () => {
+                el.textContent = model.get("text");
+                name(el, el.textContent);
+            };
+            model.on("change:text", say);
+            say();
+            // the controls come onto the page one by one
+            for (const wait of [0, 200, 1000, 3000]) setTimeout(say, wait);
+        },
+    };
+    """
+    text = traitlets.Unicode().tag(sync=True)
 
 
 class Live:
@@ -48,7 +84,7 @@ class Live:
         fig.set_layout_engine("none")
         self._background = self._canvas.copy_from_bbox(fig.bbox)
         self._moving = sorted(fig.findobj(lambda artist: artist.get_animated()), key=lambda artist: artist.zorder)
-        self.text, self.message = "", HTML()
+        self.text, self.message = "", Message()
         self.picture = Image(format="png", layout=Layout(width=f"{fig.bbox.width:.0f}px", max_width="100%"))
         for control in controls.values():
             control.layout.width = control.layout.width or "34em"
@@ -56,6 +92,7 @@ class Live:
             control.tooltip = control.description
             control.observe(self._follow, "value")
         self.widget = VBox([*controls.values(), self.message, self.picture])
+        self.widget.add_class("hoverslam-live")
         self._follow()
 
     def set(self, **values):
@@ -97,8 +134,8 @@ class Live:
         self.say(self.text)
 
     def say(self, text):
-        """Put a sentence above the picture; screen readers speak it."""
-        self.message.value = f'<div role="status" style="line-height: 1.4">{html.escape(text)}</div>'
+        """Put a sentence above the picture."""
+        self.message.text = text
 
 
 def verdict(flight, height):

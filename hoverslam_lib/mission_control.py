@@ -252,7 +252,9 @@ class MissionControl:
         moment = HBox([controls["moment"], play, self.play])
         right = VBox([controls["planet"], controls["methods"], controls["faults"], moment])
         panel = GridBox([left, right], layout=Layout(grid_template_columns="50% 50%", max_width="980px"))
-        return VBox([panel, HBox(buttons), self.live.message, self.live.picture, self.table])
+        page = VBox([panel, HBox(buttons), self.live.message, self.live.picture, self.table])
+        page.add_class("hoverslam-live")
+        return page
 
     def _list(self):
         if not self.trials:

@@ -48,7 +48,7 @@ def test_optimum_is_found_to_the_microsecond_for_the_descent_that_is_set(page):
 def test_no_soft_landing_is_explained_and_changes_nothing(page):
     page.live.set(thrust=0.2)
     page.find()
-    assert "No soft landing: thrust must exceed" in page.live.message.value
+    assert "No soft landing: thrust must exceed" in page.live.message.text
     assert page.live.controls["coarse"].value == START["coarse"]
 
 

@@ -206,6 +206,14 @@ def inward(handle):
     return 1 if now < (low + high) / 2 else -1
 
 
+def check_names(figure):
+    """What a screen reader says of a slider is its label, and of the picture the sentence above it."""
+    for n in range(figure.where.locator(".noUi-handle").count()):
+        figure.wait("([figure, n]) => figure.querySelectorAll('.noUi-handle')[n].ariaLabel", n)
+        assert figure.slider(n).get_attribute("aria-label") == figure.label(n) != ""
+    assert figure.where.locator("img").get_attribute("alt") == figure.state()["text"]
+
+
 def move_slider(figure, n, said):
     page, handle, way = figure.page, figure.slider(n), inward(figure.slider(n))
     what = "picture" if figure.label(n) in SAME_TEXT else "text"
@@ -245,6 +253,7 @@ def test_notebook_shows_a_still_before_it_is_run_and_follows_every_control_after
     assert driver.run_all(lesson)["errors"] == []
     (figure,) = figures(lesson)
     assert not figure.state()["text"].startswith("Not possible")
+    check_names(figure)
     for n in range(figure.where.locator(".noUi-handle").count()):
         move_slider(figure, n, said=name not in NOT_SAID)
     for control in figure.where.locator("input[type=checkbox], select").all():
@@ -308,8 +317,10 @@ def test_page_without_code_flies_offline(mission):
     for word in ("import", "MissionControl"):
         assert word not in mission.inner_text("body")
     (figure,) = figures(mission)
+    check_names(figure)
     for n in range(mission.locator(".noUi-handle").count()):
         move_slider(figure, n, said=False)
+    check_names(figure)
     for control in mission.locator("input[type=checkbox], select").all():
         move_other(figure, control)
 

@@ -29,13 +29,13 @@ def _steps(stiffness, x, v, dt, n, *, method="new v"):
     "two steps by hand",
     tests=2,
     hints=(
-        "Begin with the acceleration at the start: which force, and which mass does it have to move?",
+        "Look at the acceleration of each step: which force, and which mass does it have to move?",
         "Write four lines, two a step: first the new velocity, then the new position. Each uses the line before it.",
-        "The second step begins with a new acceleration, at the place where the first one ended.",
+        "Look at where each step begins: the second has a new acceleration, at the place where the first one ended.",
     ),
 )
 def two_steps_by_hand(x, v):
-    got = np.array([number(x, "the position my_x"), number(v, "the velocity my_v")])
+    got = np.array([number(x, "my_x"), number(v, "my_v")])
     start = (2.0, 1.0, 0.1)
     right = _steps(3.0, *start, 2)
     mistakes = {
@@ -62,13 +62,17 @@ def two_steps_by_hand(x, v):
         "one step": (_steps(3.0, *start, 1), "The first step is right. Now take one more from there."),
         "three steps": (_steps(3.0, *start, 3), "That is one step too many."),
         "swapped": (right[::-1], "Both numbers are right, in the wrong places: which one is the position?"),
+        "sign lost": (right * (1, -1), "Both sizes are right. Which way does the weight move in the second step?"),
     }
     if 1e-4 < np.max(np.abs(got - right)) < 0.0055:
         raise Wrong("Very near, but four decimals are asked: round only what you hand in.")
     if not np.isclose(got[1], right[1], rtol=0, atol=1e-4):
         compare(got, right, "for the velocity", mistakes, rtol=0, atol=1e-4)
     yield
-    compare(got, right, "for the position", mistakes, rtol=0, atol=1e-4)
+    if np.isclose(got[0], right[0] - start[0], rtol=0, atol=1e-4):
+        raise Wrong("That is how far it is from where it started. Where is x = 0 on a spring?", "from the start")
+    if not np.isclose(got[0], right[0], rtol=0, atol=1e-4):
+        raise Wrong("The velocity is right. From which place, and with which velocity, does the last move go?")
     yield
 
 
@@ -87,15 +91,17 @@ def _friends(exact, computed, *, cancels=False, short=False, signed=False):
     hints=(
         "Hold the function against the formula of the NMAE, sign by sign: each | | there, and what n counts.",
         "Try it by hand: exact values 1 and -2, computed 2 and -3. What should come out, and what does?",
-        "One bug is in the loop, two are in the last line. Two of the three are about signs.",
+        "Take the formula apart: the error of one sample, the number of samples, the divisor. Hold each against yours.",
     ),
 )
 def mended_nmae(function):
     takes(function, "exact", "computed")
+    if function is nmae or "nmae" in getattr(getattr(function, "__code__", None), "co_names", ()):
+        raise Wrong("Your answer asks the library's nmae. Write it out: the bugs are what this is about.")
     spring = Oscillator()
     run = integrate(spring.acceleration, 3.0, 0.0, dt=0.3, t_end=6.0, method="explicit_euler")
     for exact, computed, where in (
-        (np.array([1.0, -4.0, 2.0]), np.array([0.5, -4.2, 3.0]), "for three samples"),
+        (np.array([2.2, 2.9, -4.1, 1.3]), np.array([1.8, 3.8, -4.4, 1.95]), "for four samples"),
         (np.array([-3.0, -1.0, -0.5, -5.0]), np.array([-3.5, -1.2, -0.2, -4.0]), "for four negative exact values"),
         (np.array([-2.0]), np.array([-1.0]), "for a single sample, which is a sample too"),
         (spring.exact(run.t)[0], run.h, "for a run of explicit Euler"),
@@ -114,12 +120,14 @@ def mended_nmae(function):
         mistakes = {
             "signs cancel": (
                 _bugs(exact, computed, (1, 0, 0)),
-                "Nearly. What does it say of one error of +1 m and one of -1 m?",
+                "What does it say of one error of +1 m and one of -1 m?",
             ),
-            "steps for samples": (_bugs(exact, computed, (0, 1, 0)), "Nearly. A mean of how many numbers is it?"),
+            "steps for samples": (_bugs(exact, computed, (0, 1, 0)), "A mean of how many numbers is it?"),
+            "one too many": (right * len(exact) / (len(exact) + 1), "A mean of how many numbers is it?"),
+            "not divided by n": (right * len(exact), "You add the errors up. What makes a mean of their sum?"),
             "largest with its sign": (
                 _bugs(exact, computed, (0, 0, 1)),
-                "Nearly. How large is the amplitude of the exact values 1, -4, 2?",
+                "How large is the amplitude of the exact values 1, -4, 2?",
             ),
             "signed": (np.mean(exact - computed) / np.max(np.abs(exact)), "Can a mean error be less than nothing?"),
             "MAPE": (mape(exact, computed), "You divide each error by its own exact value. That is the MAPE."),
@@ -130,6 +138,10 @@ def mended_nmae(function):
             "amplitude of the computed": (
                 np.mean(np.abs(exact - computed)) / np.max(np.abs(computed)),
                 "Your yardstick comes from the computed values. A bad run would bring its own.",
+            ),
+            "start for amplitude": (
+                np.mean(np.abs(exact - computed)) / np.abs(exact[0]),
+                "You measure by the first exact value. Is it the largest in size?",
             ),
             "last sample only": (
                 np.abs(exact - computed)[-1] / len(exact) / np.max(np.abs(exact)),
@@ -156,7 +168,8 @@ def _bugs(exact, computed, bugs):
     hints=(
         "Where does an error of 1 mm weigh more by the MAPE than by the NMAE?",
         "Two samples are enough, one with a large exact value and one with a small one. Let each method err in one.",
-        "Call the two errors p and q, write down both measures for both methods, and see what q/p may be.",
+        "Suppose that P errs by p at one sample only, and Q by q at another. Write down both measures for both. What "
+        "may q/p be?",
     ),
 )
 def measures_disagree(exact, p, q):
@@ -166,8 +179,8 @@ def measures_disagree(exact, p, q):
     for name, values in (("my_p", p), ("my_q", q)):
         if _count(values) != count:
             raise Wrong(f"Every sample needs its result: is {name} a list of {count} numbers, as the exact values are?")
-    exact = array(exact, (count,), "the list my_exact")
-    p, q = array(p, (count,), "the list my_p"), array(q, (count,), "the list my_q")
+    exact = array(exact, (count,), "my_exact")
+    p, q = array(p, (count,), "my_p"), array(q, (count,), "my_q")
     yield
     size = np.abs(exact)
     if (size == 0).any():
@@ -186,6 +199,10 @@ def measures_disagree(exact, p, q):
     by_mape, by_nmae = mape(exact, q) / mape(exact, p), nmae(exact, p) / nmae(exact, q)
     if by_mape <= 0.1 * (1 + 1e-9) and by_nmae <= 0.1 * (1 + 1e-9):
         raise Wrong("The two do disagree, by enough. But which method should the MAPE like?", "wrong way round")
+    if _apart(exact, exact + p, exact + q):
+        raise Wrong(
+            "Are these lists the results, or their errors? Asked is what P and Q computed.", "errors for results"
+        )
     said = (
         f"By the MAPE, the error of Q is {by_mape:.3g} times that of P; by the NMAE, that of P is {by_nmae:.3g} times"
     )
@@ -195,6 +212,12 @@ def measures_disagree(exact, p, q):
     if by_nmae < 10 * (1 - 1e-9):
         raise Wrong(f"{said} that of Q. The second is still below 10.", nudge=True)
     yield
+
+
+def _apart(exact, p, q):
+    """Whether Q is ten times worse than P by the MAPE, and P than Q by the NMAE."""
+    enough = 10 * (1 - 1e-9)
+    return mape(exact, q) >= enough * mape(exact, p) and nmae(exact, p) >= enough * nmae(exact, q)
 
 
 def _count(values):

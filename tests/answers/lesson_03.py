@@ -39,6 +39,18 @@ def _by_a_shape_in_proportion(step, f, x, v, dt):
     return _area(*step(f, 0.0, xs, vs, dt)) / _area(xs, vs)
 
 
+def _by_a_shape_as_wide_as_x(step, f, x, v, dt):
+    xs, vs = 1e-5 * np.abs(x) * np.array([0, 1, 1, 0]), 1e-5 * np.abs(v) * np.array([0, 0, 1, 1])
+    new_x, new_v = step(f, 0.0, x + xs, v + vs, dt)
+    return _area(new_x - new_x[0], new_v - new_v[0]) / _area(xs, vs)
+
+
+def _corners_crossing(step, f, x, v, dt):
+    xs, vs = 1e-3 * np.array([0, 1, 1, 0]), 1e-3 * np.array([0, 1, 0, 1])
+    new_x, new_v = step(f, 0.0, x + xs, v + vs, dt)
+    return _area(new_x - new_x[0], new_v - new_v[0]) / _area(xs, vs)
+
+
 def _energy_ratio(step, f, x, v, dt):
     x_new, v_new = step(f, 0.0, x, v, dt)
     return (x_new**2 + v_new**2) / (x**2 + v**2)
@@ -104,6 +116,32 @@ def _pushes(first, second, move=1.0):
     return step
 
 
+def _second_push_halfway(f, t, h, v, dt):
+    half = v + dt / 2 * f(t, h, v)
+    return h + dt * half, half + dt / 2 * f(t + dt, h + dt / 2 * half, v)
+
+
+def _asks_in_another_order(f, t, h, v, dt):
+    v = v + dt / 2 * f(h, v, t)
+    h = h + dt * v
+    return h, v + dt / 2 * f(h, v, t + dt)
+
+
+def _asks_in_another_order_with_the_old_velocity(f, t, h, v, dt):
+    half = v + dt / 2 * f(h, v, t)
+    h = h + dt * half
+    return h, half + dt / 2 * f(h, v, t + dt)
+
+
+def _first_push_later(share):
+    def step(f, t, h, v, dt):
+        v = v + dt / 2 * f(t + share * dt, h, v)
+        h = h + dt * v
+        return h, v + dt / 2 * f(t + dt, h, v)
+
+    return step
+
+
 def _old_velocity(f, t, h, v, dt):
     half = v + dt / 2 * f(t, h, v)
     h = h + dt * v
@@ -136,7 +174,8 @@ WRONG = {
         ((258.3, 0.1216), "milliseconds for seconds"),
         ((287, 109), None),
         ((258.3, 125), None),
-        ((-258.3, 121), None),
+        ((-258.3, 121), "wrong sign"),
+        ((121.6, 258.3), "swapped"),
         ((250, 125), None),
         ((258.3, float("inf")), None),
         (("258 ms", 121), None),
@@ -156,6 +195,11 @@ WRONG = {
         (lambda *at: _verlet(*at)[::-1], "swapped"),
         (_verlet_in_place, "changes its arguments"),
         (_time_of_the_middle, "time of the middle"),
+        (_second_push_halfway, "place of the middle"),
+        (_asks_in_another_order, "order of arguments"),
+        (_asks_in_another_order_with_the_old_velocity, "order of arguments, old v"),
+        (_first_push_later(1), "first push at the end"),
+        (_first_push_later(0.5), "first push in the middle"),
         (_explicit_midpoint, None),
         (_trapezoid_of_velocities, "old time"),
         (_pushes(-0.5, -0.5), None),
@@ -170,6 +214,11 @@ WRONG = {
         (lambda *at: _by_a_square(*at) ** 2, "squared"),
         (lambda *at: _by_a_square(*at, side=1.0), None),
         (lambda *at: _by_a_square(*at, side=0.1, centred=False), None),
+        (lambda *at: _by_a_square(*at, side=0.2, shifted=False), None),
+        (lambda *at: _by_a_square(*at, side=0.02, shifted=False), None),
+        (lambda *at: _by_a_square(*at, side=0.005, shifted=False), None),
+        (_corners_crossing, None),
+        (_by_a_shape_as_wide_as_x, None),
         (lambda *at: _by_a_square(*at, shifted=False), None),
         (lambda *at: _by_a_square(*at, shifted=False, centred=False), None),
         (lambda *at: _by_a_square(*at, side=1e-4, shifted=False), None),
@@ -201,7 +250,7 @@ RIGHT = {
         _by_a_square,
         _by_differences,
         _by_a_round_shape,
-        lambda *at: _by_a_square(*at, side=0.01, centred=False),
+        lambda *at: _by_a_square(*at, side=0.001, centred=False),
         lambda *at: [_by_a_square(*at, side=1e-6)],
     ],
 }

@@ -23,6 +23,33 @@ def _as_it_is(x):
     return x
 
 
+def _slope_twice_too_steep(r, u):
+    for _ in range(50):
+        nudge = 1e-6 * (1 + abs(u))
+        slope = (r(u + nudge) - r(u - nudge)) / nudge
+        u = u - r(u) / slope
+        if abs(r(u)) < 1e-12:
+            return u
+    raise ArithmeticError("no zero")
+
+
+def _stops_early(r, u):
+    for _ in range(50):
+        u = u - r(u) * 1e-6 / (r(u + 1e-6) - r(u))
+        if abs(r(u)) < 1e-6:
+            return u
+    raise ArithmeticError("no zero")
+
+
+def _central(r, u):
+    for _ in range(50):
+        nudge = 1e-5 * (1 + abs(u))
+        u = u - r(u) * 2 * nudge / (r(u + nudge) - r(u - nudge))
+        if abs(r(u)) < 1e-12:
+            return u
+    raise ArithmeticError("no zero")
+
+
 def _raises_in_the_loop(r, u):
     for _ in range(50):
         slope = (r(u + 1e-6) - r(u)) / 1e-6
@@ -101,6 +128,10 @@ def _mean(h, v, u, dt):
 
 def _end(h, v, u, dt):
     return h + dt * u
+
+
+def _sum(h, v, u, dt):
+    return h + dt * (v + u)
 
 
 def _both(f0, at, place):
@@ -185,6 +216,8 @@ WRONG = {
         ((0.5, math.log(1000) / math.log(3)), "not a whole number"),
         ((0.5, 500), "added up"),
         ((0.5, 2), "fastest droplet"),
+        ((0.5, 10), "divided by λΔt"),
+        ((500, 7), None),
         ((0.5, 8), None),
         ((0.5, "seven"), None),
     ],
@@ -204,6 +237,8 @@ WRONG = {
         (_raises_always, None),
         (lambda r, u: _newton(r, u, turns=10_000, aloud=False), "gives up in silence"),
         (lambda r, u: round(_newton(r, u), 4), None),
+        (_stops_early, None),
+        (_slope_twice_too_steep, "half a turn"),
     ],
     "4.3": [
         (lambda *a: _solved(*a, place=_end, arrive=_end, slope=lambda f0, at, x: at(1, x)), "implicit Euler"),
@@ -212,6 +247,9 @@ WRONG = {
         (lambda *a: _solved(*a, place=_end, arrive=_end), "height by the new velocity"),
         (lambda *a: _solved(*a, slope=lambda f0, at, x: (f0 + at(0, x)) / 2), "time of the start"),
         (lambda *a: _solved(*a, slope=lambda f0, at, x: f0 + at(1, x)), "not halved"),
+        (lambda *a: _solved(*a, arrive=_sum), "height not halved"),
+        (lambda *a: _solved(*a, place=_sum, arrive=_sum), "no height halved"),
+        (lambda *a: _solved(*a, place=_sum, arrive=_sum, slope=lambda f0, at, x: f0 + at(1, x)), "nothing halved"),
         (_midpoint, "mean place"),
         (_once, "not solved"),
         (_heun_mean, "not solved, nor the height"),
@@ -224,13 +262,13 @@ WRONG = {
         (_again_and_again_aloud, "answer put in again"),
         (lambda *a: _solved(*a, aloud=False), "gives up in silence"),
         (lambda *a: _solved(*a)[1], None),
-        (lambda *a: _solved(*a)[::-1], None),
+        (lambda *a: _solved(*a)[::-1], "swapped"),
         (lambda f, t, h, v, dt: (h + dt * v, v + dt * f(t, h, v)), None),
     ],
 }
 
 RIGHT = {
     "4.1": [(0.5, 7), (np.float64(2 / 4.0), 7.0), ([0.5], np.int64(7))],
-    "4.2": [_newton, _by_the_correction, _by_secants, lambda r, u: np.array([_newton(r, u)])],
+    "4.2": [_newton, _by_the_correction, _by_secants, _central, lambda r, u: np.array([_newton(r, u)])],
     "4.3": [_solved, _two_halves, _by_scipy, lambda *a: np.array(_solved(*a)), lambda *a: list(_solved(*a))],
 }

@@ -22,6 +22,22 @@ def _with_if(h, v, wind):
     return -descent.drag(h, abs(v - wind))
 
 
+def _by_math(h, v, wind):
+    rho = planet.surface_density * math.exp(-h / planet.scale_height)
+    return -0.5 * rho * booster.drag_coefficient * booster.area * abs(v - wind) * (v - wind)
+
+
+def _by_mass_and_radius(GM, sign=-1):
+    """Energy that is missing, with a GM of one's own."""
+
+    def taken(flight):
+        p = flight.descent.planet
+        E = flight.mass * flight.v**2 / 2 + sign * GM(p) * flight.mass / (p.radius + flight.h)
+        return E[0] - E
+
+    return taken
+
+
 def _energy(g=None, kinetic=0.5, of=None):
     """Energy that is missing, with a potential energy to choose."""
 
@@ -102,6 +118,9 @@ WRONG = {
         ((405, 668, 11.64), "mass does not matter"),
         ((293, 668, 11.64), "mass of the propellant"),
         ((202, 668, 11.64), None),
+        ((-279, 668, 11.64), "negative"),
+        ((279, -668, 11.64), "negative"),
+        ((279, 668, -11.64), "negative"),
         ((279, 1101, 11.64), "density without the root"),
         ((279, 246, 11.64), "upside down"),
         ((279, 405, 11.64), "same as on the ground"),
@@ -125,17 +144,22 @@ WRONG = {
         (_wind(lambda v, w: abs(v - w) * (v - w), half=1), "without the half"),
         (_wind(lambda v, w: abs(v - w) * (v - w), density=lambda h: 1.3), "air of the ground"),
         (_wind(lambda v, w: abs(v - w) * (v - w), area=1), "no area"),
-        (_wind(lambda v, w: abs(v - w) * (v - w), area=2 * booster.area / booster.radius), None),
+        (_wind(lambda v, w: abs(v - w) * (v - w), area=2 * booster.area / booster.radius), "circumference"),
+        (_wind(lambda v, w: abs(v - w) * (v - w), area=math.pi * booster.radius), "radius not squared"),
         (_wind(lambda v, w: v - w), None),
         (_wind(lambda v, w: (v - w) ** 2), "pushes along"),
         (lambda h, v, w: descent.drag(h, v - w) / booster.initial_mass, "an acceleration"),
         (_with_if, None),
+        (_by_math, None),
     ],
     "6.3": [
         (lambda flight: -_energy()(flight), "negative"),
         (lambda flight: cumulative_trapezoid(flight.descent.drag(flight.h, flight.v), flight.h, initial=0), "negative"),
         (_left, "what is left"),
         (lambda flight: flight.mass * (flight.v[0] ** 2 - flight.v**2) / 2, "kinetic energy alone"),
+        (_by_mass_and_radius(lambda p: p.gravity(0.0) * p.radius), "kinetic energy alone"),
+        (lambda flight: -_all_forces(flight), "kinetic energy alone"),
+        (_by_mass_and_radius(lambda p: 6.6743e-11 * p.mass, sign=1), "sign of the potential energy"),
         (_energy(kinetic=0), "no kinetic energy"),
         (_energy(lambda p, h: p.gravity(h)), "g of the place times h"),
         (_energy(9.81), "flat g"),
@@ -159,6 +183,7 @@ WRONG = {
         (lambda flight: cumulative_trapezoid(-flight.descent.drag(flight.h, flight.v), flight.h), None),
         (_changes_the_flight, "changes the flight"),
         (lambda flight: flight.descent.drag(flight.h, flight.v), None),
+        (lambda flight: 0 * flight.t, None),
         (lambda flight: -_energy()(flight) + _start(flight), "what is left, counted from infinity"),
         (lambda flight: _sums(flight, -flight.descent.drag(flight.h, flight.v), flight.h), "force of the old sample"),
         (
@@ -176,5 +201,5 @@ RIGHT = {
         lambda h, v, w: descent.drag(h, v - w),
         lambda h, v, w: np.float64(0.25) * (w - v) * abs(w - v) * planet.air_density(h) * math.pi * 1.83**2,
     ],
-    "6.3": [_energy(), _work, _power, _weight_by_heights],
+    "6.3": [_energy(), _work, _power, _weight_by_heights, _by_mass_and_radius(lambda p: 6.67e-11 * p.mass)],
 }

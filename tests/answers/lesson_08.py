@@ -95,6 +95,52 @@ def _divides_by_numpys_zero(h, v, a, dt):
         return _divides_by_zero(h, v, np.float64(a), dt)
 
 
+def _looks_after(theta, nodes, weights, a, dt, *, ignition):
+    return a * dt * (weights[nodes > ignition].sum() - (1 - theta))
+
+
+def _by_math(h, v, a, dt):
+    s = -h / v if a == 0 else (-v - math.sqrt(v**2 - 2 * a * h)) / a
+    return s if 0 < s <= dt else None
+
+
+def _without_the_half_or_the_end(h, v, a, dt):
+    inside = v**2 - 4 * a * h
+    if inside < 0:
+        return None
+    s = (-v - inside**0.5) / (2 * a) if a else _first_root(h, v, a)
+    return s if s is not None and 0 < s <= dt else None
+
+
+def _by_an_eighth(h, v, a, dt):
+    s = (-v - (v**2 - 8 * a * h) ** 0.5) / (4 * a) if a else _first_root(h, v, a)
+    return s if 0 < s <= dt else None
+
+
+def _another_root(h, v, a, dt):
+    inside = v**2 - 4 * a * h
+    if inside < 0:
+        return None
+    return (-v + inside**0.5) / (2 * a) if a else _first_root(h, v, a)
+
+
+def _smaller_root(h, v, a, dt):
+    if a == 0:
+        return _any_length(h, v, a, dt)
+    inside = v**2 - 2 * a * h
+    if inside < 0:
+        return None
+    s = min((-v - inside**0.5) / a, (-v + inside**0.5) / a)
+    return s if s <= dt else None
+
+
+def _sampled(h, v, a, dt):
+    for s in np.linspace(0, dt, 1001):
+        if h + v * s + a * s**2 / 2 <= 0:
+            return s
+    return None
+
+
 def _straight_line(h, v, a, dt):
     s = dt * h / -(v * dt + a * dt**2 / 2)
     return s if s > 0 else None
@@ -142,6 +188,8 @@ WRONG = {
         (_judge(order=math.log10), "decimal logarithm"),
         (_judge(order=lambda r: np.log2(1 / r)), "upside down"),
         (_judge(order=math.sqrt), "root"),
+        (_judge(order=lambda r: round(np.log2(r))), "rounded"),
+        (_judge(order=lambda r: int(np.log2(r))), "rounded down"),
         (_judge(error=lambda c, m, f: abs(c - m) / (_ratio(c, m, f) - 1)), "error of the middle run"),
         (_judge(error=lambda c, m, f: abs(m - f)), "change"),
         (_judge(error=lambda c, m, f: abs(m - f) / _ratio(c, m, f)), "divided by the ratio"),
@@ -161,18 +209,28 @@ WRONG = {
         (lambda th, c, b, a, dt: a * dt * (np.mean(c > th) - (1 - th)), "looks counted"),
         (lambda th, c, b, a, dt: a * (_seen(th, c, b) - (1 - th)), "dt missing"),
         (lambda th, c, b, a, dt: dt * (_seen(th, c, b) - (1 - th)), "a missing"),
+        (lambda *x: _looks_after(*x, ignition=x[0] * x[4]), "theta as a time for the looks"),
+        (lambda *x: _looks_after(*x, ignition=x[0] / x[4]), None),
+        (lambda th, c, b, a, dt: a * (dt * _seen(th, c, b) - (dt - th)), "theta as a time"),
         (_tooth_of_rk4, None),
         (lambda th, c, b, a, dt: a * dt * ((c > th) - (1 - th)), None),
         (lambda th, c, b, a, dt: abs(_tooth_of_a_step(th, c, b, a, dt)), "sign lost"),
     ],
     "8.3": [
-        (_as_given, "dip missed"),
+        (_as_given, "the wrong root"),
         (_dip_missed, "dip missed"),
         (_later_root, "the wrong root"),
         (_any_length, "after the step"),
         (_even_before, "before the step"),
         (_without_a_question, "no root"),
-        (_compares_with_complex, None),
+        (_compares_with_complex, "no root"),
+        (_by_math, "no root"),
+        (_without_the_half_or_the_end, "half forgotten"),
+        (_another_root, None),
+        (_by_an_eighth, None),
+        (lambda h, v, a, dt: (-v - (v**2 - 8 * a * h) ** 0.5) / a, None),
+        (_smaller_root, "the wrong root"),
+        (_sampled, None),
         (_divides_by_zero, None),
         (_divides_by_numpys_zero, "a is 0"),
         (_straight_line, "linear"),

@@ -121,12 +121,14 @@ class Live:
 
     def _follow(self, change=None):
         try:
-            self.text = self.update(**{name: control.value for name, control in self.controls.items()})
+            said = self.update(**{name: control.value for name, control in self.controls.items()})
+            if not isinstance(said, str):
+                raise TypeError(f"update must return a sentence that says what the picture shows; it returned {said!r}")
         except Exception as error:  # whatever a student's own function raises is shown, and the controls stay usable
             self.text = f"Not possible: {str(error) or type(error).__name__}"
             moving = ()
         else:
-            moving = self._moving
+            self.text, moving = said, self._moving
         self._canvas.restore_region(self._background)
         for artist in moving:
             self.fig.draw_artist(artist)

@@ -93,6 +93,14 @@ def test_whatever_an_update_raises_is_shown(error):
     made.close()
 
 
+def test_update_without_a_sentence_is_told_so():
+    fig, _ = plt.subplots()
+    made = Live(fig, lambda x: None, x=FloatSlider(1.0))
+    assert made.message.text == made.text
+    assert "must return a sentence" in made.text
+    made.close()
+
+
 def test_set_draws_once(dot, monkeypatch):
     pictures = []
     dot.picture.observe(lambda change: pictures.append(change), "value")

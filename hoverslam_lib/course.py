@@ -18,7 +18,14 @@ from pathlib import Path
 NOTEBOOKS = Path(__file__).resolve().parent.parent / "notebooks"
 LONGEST_CELL = 15
 LARGEST_FILE = 700_000
-NOT_FOR_STUDENTS = ("solutions", "erratum", "instructor_guide.md", "__pycache__", ".ipynb_checkpoints")
+NOT_FOR_STUDENTS = (
+    "solutions",
+    "erratum",
+    ".hoverslam_progress.json",
+    "instructor_guide.md",
+    "__pycache__",
+    ".ipynb_checkpoints",
+)
 
 
 def lessons(names=()):

@@ -25,6 +25,7 @@ def folder(tmp_path, monkeypatch):
     (notebooks / "images").mkdir()
     (notebooks / "images" / "picture.png").write_bytes(b"png")
     (notebooks / "instructor_guide.md").write_text("answers")
+    (notebooks / ".hoverslam_progress.json").write_text("the instructor's own")
     for name in ("01_first", "02_second"):
         cells = [nbformat.v4.new_markdown_cell("# 1"), nbformat.v4.new_code_cell("print('a')\nprint('b')")]
         cells.append(nbformat.v4.new_code_cell(FIGURE, metadata={"collapsed": True, "tags": ["kept"]}))

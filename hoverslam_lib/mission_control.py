@@ -27,6 +27,7 @@ from ipywidgets import (
 )
 
 from hoverslam_lib import plotting, published
+from hoverslam_lib.animation import FREE_FALL
 from hoverslam_lib.booster import FALCON_9
 from hoverslam_lib.descent import Descent
 from hoverslam_lib.ignition import FreeFall, NoSoftLanding, best_ignition
@@ -35,7 +36,6 @@ from hoverslam_lib.live import Live, verdict
 from hoverslam_lib.planet import EARTH, MARS, MOON
 
 PLANETS = {"Earth": EARTH, "Mars": MARS, "Moon": MOON}
-G = 9.81
 KEPT = 12
 """How many trials the table remembers."""
 
@@ -47,8 +47,8 @@ START = {
     "fine": 0.0,
     "dt": 0.02,
     "methods": ("rk4",),
-    "thrust": 7.6,
-    "drag": 0.5,
+    "thrust": FALCON_9.thrust / 1e6,
+    "drag": FALCON_9.drag_coefficient,
     "planet": "Earth",
     "faults": False,
     "moment": 100,
@@ -61,7 +61,7 @@ PANELS = (
     ("velocity [m/s]", (-2700, 500), lambda trial: trial["v"]),
     ("mass [t]", (-10, 62), lambda trial: trial["mass"] / 1e3),
     ("thrust [MN]", (-0.5, 16), lambda trial: trial["thrust"] / 1e6),
-    ("felt [g]", (-5, 45), lambda trial: trial["felt"] / G),
+    ("felt [g]", (-5, 45), lambda trial: trial["felt"] / FREE_FALL),
 )
 OVER_HEIGHT = 2
 
@@ -101,7 +101,7 @@ def try_out(descent, t_ignite, dt, method, faults=False):
     fall = _fall(descent, dt, method)
     flight = fall.fly(t_ignite)
     try:
-        height = fall.hover_height(t_ignite)
+        height = flight.hover[1] if flight.hover else fall.hover_height(t_ignite)  # the same, if it hovered
     except NoSoftLanding:
         height = math.nan
     return {
@@ -205,7 +205,7 @@ class MissionControl:
         return {name: control.value for name, control in self.live.controls.items()}
 
     def _descent(self, thrust, drag, planet, **_):
-        booster = replace(FALCON_9, thrust=FALCON_9.thrust * thrust / 7.6, drag_coefficient=drag)
+        booster = replace(FALCON_9, thrust=1e6 * thrust, drag_coefficient=drag)
         return Descent(booster, PLANETS[planet])
 
     def _figure(self):

@@ -2,6 +2,7 @@
 
 import base64
 import io
+from contextlib import contextmanager
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -76,6 +77,41 @@ def show(fig, *, alt):
         raise ValueError("alt must say what the figure shows")
     display(Picture(_png(fig), " ".join(alt.split()), round(fig.get_figwidth() * fig.dpi)))
     plt.close(fig)
+
+
+@contextmanager
+def figure(title="", *, x="", y="", alt, **subplots):
+    """Make a figure, label it, and show it when the ``with`` block, in which it is drawn, ends.
+
+    Parameters
+    ----------
+    title, x, y : str or sequence of str
+        Title, and the quantities on the axes with their units: one text for all axes, or one for each of them.
+    alt : str
+        As for `show`.
+    **subplots
+        For ``plt.subplots``: nrows, ncols, sharex, figsize, …
+
+    Yields
+    ------
+    matplotlib Axes or ndarray of Axes
+        As ``plt.subplots`` returns them.
+
+    Raises
+    ------
+    ValueError
+        If `alt` is empty, or if there is not one text for each of the axes.
+    """
+    fig, axes = plt.subplots(**subplots)
+    try:
+        each = np.ravel(axes)
+        texts = [[text] * len(each) if isinstance(text, str) else text for text in (title, x, y)]
+        for ax, of_title, of_x, of_y in zip(each, *texts, strict=True):
+            ax.set(title=of_title, xlabel=of_x, ylabel=of_y)
+        yield axes
+        show(fig, alt=alt)
+    finally:
+        plt.close(fig)
 
 
 def _png(fig):

@@ -54,3 +54,30 @@ def test_figure_without_text_is_refused(shown):
     with pytest.raises(ValueError, match="alt must say what the figure shows"):
         plotting.show(fig, alt="  ")
     plt.close(fig)
+
+
+def test_figure_is_labelled_and_shown_when_its_block_ends(shown):
+    with plotting.figure("Fall", x="t [s]", y="h [m]", alt="a fall from 3 m", figsize=(5, 3)) as ax:
+        ax.plot([0, 1], [3, 0])
+        assert (ax.get_title(), ax.get_xlabel(), ax.get_ylabel()) == ("Fall", "t [s]", "h [m]")
+        assert shown == []
+    assert [repr(picture) for picture in shown] == ["a fall from 3 m"]
+    assert plt.get_fignums() == []
+
+
+def test_figure_takes_a_text_for_each_of_several_axes(shown):
+    with plotting.figure(("a", "b"), x="t [s]", y=("h [m]", "v [m/s]"), alt="2 lines", ncols=2) as axes:
+        assert [(ax.get_title(), ax.get_xlabel(), ax.get_ylabel()) for ax in axes] == [
+            ("a", "t [s]", "h [m]"),
+            ("b", "t [s]", "v [m/s]"),
+        ]
+    with pytest.raises(ValueError, match="shorter"), plotting.figure(y=("h [m]",), alt="2 lines", ncols=2):
+        pass
+    assert plt.get_fignums() == []
+
+
+def test_figure_that_fails_is_not_shown_and_not_kept(shown):
+    with pytest.raises(ZeroDivisionError), plotting.figure(alt="a line of 1 m"):
+        1 / 0
+    assert shown == []
+    assert plt.get_fignums() == []

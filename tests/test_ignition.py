@@ -417,6 +417,15 @@ def test_shared_fall_leads_to_the_same_flights(descent, method):
         np.testing.assert_allclose(fall.hover_height(t), again, rtol=1e-12, atol=1e-7)
 
 
+@pytest.mark.parametrize("t_ignite", [60.211, 60.2110345])
+def test_shared_fall_ends_as_softly(t_ignite):
+    flown, anew = FreeFall(PAPER).fly(t_ignite), fly(PAPER, t_ignite)
+    assert flown.outcome == anew.outcome == "soft landing"
+    assert flown.hover == pytest.approx(anew.hover, rel=1e-12, abs=1e-9)
+    assert flown.touchdown == pytest.approx(anew.touchdown, rel=1e-6)
+    assert len(flown.t) == len(anew.t)
+
+
 def test_shared_fall_takes_a_controller_and_refuses_what_fly_refuses():
     def half(t, h, v, mass):
         return 0.5

@@ -137,7 +137,7 @@ def speed_after_fall(planet, h, v=0.0):
 
 
 class StepTooLargeError(ValueError):
-    """The numbers overflow within a step."""
+    """A step is so large that its numbers overflow, or that it ends on the ground going up."""
 
 
 LANDING_BURN = Descent(FALCON_9_LANDING_BURN, EARTH, height=10e3, velocity=-350.0)
@@ -164,8 +164,8 @@ class Flight:
     touchdown : tuple of float or None
         (t, v) [s, m/s].
     hover : tuple of float or None
-        (t, h) [s, m] where v changed from - to + with the engine on: where the engine was cut for a soft fall, else
-        the first time.
+        (t, h) [s, m] where v changed from - to + with the engine on, or where the engine came on at rest and thrust
+        was not below weight: where it was cut for a soft fall, else the first time.
     """
 
     descent: Descent
@@ -251,7 +251,7 @@ def fly(descent, t_ignite, *, dt=0.02, method="rk4", controller=None):
     ------
     ValueError, TypeError
         If an argument is not allowed, if the flight would take more than ten million steps, if dt is so large that
-        the numbers overflow, or if the booster never comes down.
+        the numbers overflow or a climb ends on the ground, or if the booster never comes down.
     """
     if not isinstance(descent, Descent):
         raise TypeError(f"descent must be a Descent; got {descent!r}")
@@ -308,7 +308,9 @@ def coast(descent, t_end, *, dt, step, start=None):
             return nodes, "space"
         while t < t_next:
             s, h, v, event = advance(step, f, t, h, v, t_next - t)
-            t = t_next if event is None else t + s
+            t = t_next if event is None else min(t + s, t_next)
+            if t == nodes[-1][0]:  # shorter than the last digit of t
+                nodes.pop()
             nodes.append((t, h, v))
             if event == "ground":
                 return nodes, "ground"
@@ -326,18 +328,24 @@ def _burn(descent, t, h, v, controller, *, dt, step):
             f = descent.acceleration(throttle=throttle, mass=mass, since=since)
             t_empty = since + (mass - booster.dry_mass) / rate if rate else math.inf
         t_next = min(t_next, t_empty)
-        while t < t_next:
-            nodes.append((t, h, v, mass, throttle))
-            falling = v < 0
-            s, h, v, event = advance(step, f, t, h, v, t_next - t)
-            t = t_next if event is None else t + s
-            mass = mass_then - rate * (t - since)
-            if event == "ground":
-                return [*nodes, (t, h, v, mass, throttle)], True, hover
-            if event == "turn" and falling and throttle > 0:
+        rests = v == 0 and throttle > 0 and f(t, h, v) >= 0
+        while True:
+            if rests:
                 if fall := _soft_fall(descent.planet, t, h, v, mass):
                     return [*nodes, *fall], True, (t, h)
                 hover = hover or (t, h)
+            if t >= t_next:
+                break
+            nodes.append((t, h, v, mass, throttle))
+            falling = v < 0
+            s, h, v, event = advance(step, f, t, h, v, t_next - t)
+            t = t_next if event is None else min(t + s, t_next)
+            if t == nodes[-1][0]:  # shorter than the last digit of t
+                nodes.pop()
+            mass = mass_then - rate * (t - since)
+            if event == "ground":
+                return [*nodes, (t, h, v, mass, throttle)], True, hover
+            rests = event == "turn" and falling and throttle > 0
         if t >= t_empty:
             fall = _soft_fall(descent.planet, t, h, v, booster.dry_mass)
             return [*nodes, *(fall or [(t, h, v, booster.dry_mass, throttle)])], bool(fall), hover
@@ -369,6 +377,11 @@ def advance(step, f, t, h, v, dt, *, ground=0.0):
         State at its end [m, m/s].
     event : str or None
         "turn" (v has changed sign; it is 0 now), "ground" (h is 0 now), or None.
+
+    Raises
+    ------
+    StepTooLargeError
+        If the numbers overflow, or if the step ends on the ground going up.
     """
 
     try:
@@ -382,7 +395,7 @@ def advance(step, f, t, h, v, dt, *, ground=0.0):
         return dt, h_end, v_end, None
 
     def to(s):
-        return step(f, t, h, v, s)
+        return step(f, t, h, v, s) if s else (h, v)  # an implicit method would divide by zero
 
     end = dt
     if turns:
@@ -391,7 +404,12 @@ def advance(step, f, t, h, v, dt, *, ground=0.0):
         if h_end >= ground:
             return end, h_end, 0.0, "turn"
     end = bracketed_root(lambda s: to(s)[0] - ground, 0.0, end, h - ground, h_end - ground)
-    return end, ground, to(end)[1], "ground"
+    v_end = to(end)[1]
+    if v_end > 0:
+        raise StepTooLargeError(
+            f"a climb from t = {t:g} s ends on the ground: dt = {dt:g} s is too large for this method"
+        )
+    return end, ground, v_end, "ground"
 
 
 def _ask(controller, t, h, v, mass):

@@ -23,7 +23,15 @@ from hoverslam_lib import (
     observed_order,
     speed_after_fall,
 )
-from hoverslam_lib.descent import CRASH, OUT_OF_PROPELLANT, OUTCOMES, SOFT_LANDING, SOFT_SPEED, STOPPED_TOO_HIGH
+from hoverslam_lib.descent import (
+    CRASH,
+    OUT_OF_PROPELLANT,
+    OUTCOMES,
+    SOFT_LANDING,
+    SOFT_SPEED,
+    STOPPED_TOO_HIGH,
+    StepTooLargeError,
+)
 
 PAPER = Descent()
 OPTIMUM = referee.best_ignition(PAPER, 60.0, 60.5)
@@ -311,6 +319,62 @@ def test_a_hover_on_the_ground_itself_ends_the_flight_there():
     assert flight.hover == (2.0, 0.0)
     assert math.copysign(1.0, flight.v[-1]) == 1.0
     assert np.all(np.diff(flight.t) > 0)
+
+
+def even(f, t, h, v, dt):
+    """A step with -2 m/s², whatever the forces are, so that an apex falls exactly on the end of a step."""
+    return h + dt * v - dt * dt, v - 2 * dt
+
+
+@pytest.mark.parametrize(
+    ("descent", "t_ignite", "method", "height"),
+    [(Descent(height=1000.0, velocity=0.0), 0.0, "rk4", 1000.0), (Descent(height=1.0, velocity=4.0), 2.0, even, 5.0)],
+)
+def test_at_rest_on_ignition_it_hovers_there(descent, t_ignite, method, height):
+    flight = fly(descent, t_ignite, dt=0.5, method=method)
+    assert flight.hover == (t_ignite, height)
+    assert method == even or flight.outcome == STOPPED_TOO_HIGH
+    assert hover_height(descent, t_ignite, dt=0.5, method=method) == height
+    weak = replace(descent, booster=replace(FALCON_9, thrust=500e3))  # below the weight: it falls on
+    assert fly(weak, t_ignite, dt=0.5, method=method).hover != (t_ignite, height)
+
+
+def test_a_controller_that_lights_the_engine_at_rest_hovers_there():
+    asked = iter([0.0, 1.0])
+    flight = fly(
+        Descent(height=1.0, velocity=4.0), 1.5, dt=0.5, method=even, controller=lambda *state: next(asked, 0.5)
+    )
+    assert flight.hover == (2.0, 5.0)
+
+
+def test_at_rest_low_enough_the_engine_is_cut_at_once():
+    flight = fly(Descent(height=0.1, velocity=0.0), 0.0)
+    assert flight.outcome == SOFT_LANDING
+    assert flight.hover == (0.0, 0.1)
+    assert flight.touchdown == pytest.approx((math.sqrt(0.2 / 9.7984), -math.sqrt(0.2 * 9.7984)), rel=1e-5)
+    assert flight.mass[-1] == FALCON_9.initial_mass
+
+
+LIGHT = Descent(Booster(20.0, 20.0, 0.2, 600.0, 0.5, 1.0), EARTH, 100.0, 200.0)
+
+
+@pytest.mark.parametrize("t_ignite", [None, 0.0])
+def test_a_climb_that_ends_on_the_ground_is_a_step_too_large(t_ignite):
+    # rk4 with so long a step in thick air ends below the ground, and faster upward than it began
+    with pytest.raises(StepTooLargeError, match=r"climb from t = .* ends on the ground: dt = 0.5 s is too large"):
+        fly(LIGHT, t_ignite, dt=0.5)
+    assert fly(LIGHT, t_ignite, dt=0.05).touchdown is None or fly(LIGHT, t_ignite, dt=0.05).touchdown[1] < 0
+
+
+@pytest.mark.parametrize("method", ["rk4", "implicit_euler"])
+@pytest.mark.parametrize("digits", range(-3, 4))
+def test_time_goes_on_however_near_ignition_is_to_an_apex(method, digits):
+    apex = fly(ASCENDING, None, dt=0.3, method=method)
+    t_apex = float(apex.t[np.flatnonzero(apex.v == 0)[0]])
+    t_ignite = t_apex + digits * math.ulp(t_apex)
+    flight = fly(ASCENDING, t_ignite, dt=0.3, method=method)
+    assert np.all(np.diff(flight.t) > 0)
+    assert (flight.hover is None) == math.isinf(hover_height(ASCENDING, t_ignite, dt=0.3, method=method))
 
 
 def test_a_soft_landing_without_an_engine():

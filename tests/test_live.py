@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from ipywidgets import Checkbox, Dropdown, FloatLogSlider, FloatSlider, IntSlider, SelectionSlider, SelectMultiple
 from PIL import Image
+from scipy.optimize import brentq
 
 from hoverslam_lib import FALCON_9, Descent, FreeFall, course, fly, live
 from hoverslam_lib.live import Live, verdict
@@ -161,6 +162,19 @@ def test_verdict_leads_with_the_hover_height():
     assert said(20.0) == "stopped 91.52 km too high"
     assert "too fast at the ground" in said(99.0)
     assert "nan" not in said(99.0)
+
+
+def test_verdict_says_numbers_that_help():
+    fall = FreeFall(Descent(), dt=0.1)
+    t = brentq(lambda t: fall.hover_height(t) - 999.7, 59.0, 60.2)
+    assert verdict(fall.fly(t), 999.7) == "stopped 1.00 km too high"
+    t = brentq(lambda t: fall.fly(t).touchdown[1] + 2.004, 60.21104, 60.2112)
+    assert verdict(fall.fly(t), fall.hover_height(t)).endswith("m, 0.004 m/s too fast at the ground")
+    short = replace(FALCON_9, propellant_mass=2.0)
+    for velocity, said in ((-1.0, "-0.6"), (-0.37, "0.0"), (-30.0, "-30")):
+        empty = fly(Descent(short, height=0.5, velocity=velocity), 0.0)
+        assert verdict(empty, 0.5).startswith("tank empty 0.")
+        assert verdict(empty, 0.5).endswith(f"m above the ground, at {said} m/s")
 
 
 def test_verdict_says_how_a_flight_ended_softly():

@@ -170,8 +170,8 @@ def verdict(flight, height):
         speed = speed_after_fall(flight.descent.planet, h)
         return f"stopped {_length(h)} too high, and with the engine cut there, a crash with {speed:.1f} m/s"
     if flight.outcome == OUT_OF_PROPELLANT:
-        v = flight.v[-1]
-        return f"tank empty {_length(flight.h[-1])} above the ground, at {round(v, 1) + 0.0:.{0 if abs(v) >= 9.95 else 1}f} m/s"
+        v = round(flight.v[-1], 1) + 0.0  # no -0.0
+        return f"tank empty {_length(flight.h[-1])} above the ground, at {v:.{0 if abs(v) >= 10 else 1}f} m/s"
     braked = f"hover height −{_length(-height)}, " if -math.inf < height else ""
     excess = -flight.touchdown[1] - SOFT_SPEED
     return f"{braked}{f'{excess:.1f}' if excess >= 0.95 else f'{excess:.2g}'} m/s too fast at the ground"

@@ -1,7 +1,7 @@
 """Numerical integration, taught by landing a Falcon 9 booster. SI units; h up, v negative while falling."""
 
 from hoverslam_lib.booster import FALCON_9, FALCON_9_LANDING_BURN, Booster
-from hoverslam_lib.descent import LANDING_BURN, Descent, Flight, fly
+from hoverslam_lib.descent import LANDING_BURN, OUTCOMES, SOFT_SPEED, Descent, Flight, fly, speed_after_fall
 from hoverslam_lib.ignition import FreeFall, Ignition, NoSoftLanding, best_ignition, hover_height, ignition_table
 from hoverslam_lib.integrators import METHODS, Method
 from hoverslam_lib.metrics import mape, max_error, nmae, observed_order, rmse
@@ -17,6 +17,8 @@ __all__ = [
     "MARS",
     "METHODS",
     "MOON",
+    "OUTCOMES",
+    "SOFT_SPEED",
     "Booster",
     "Descent",
     "Flight",
@@ -37,4 +39,5 @@ __all__ = [
     "nmae",
     "observed_order",
     "rmse",
+    "speed_after_fall",
 ]

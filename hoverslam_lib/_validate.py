@@ -58,3 +58,8 @@ def step_count(duration, dt):
             f"dt = {dt:g} s would take {count} steps or more; at most {MAX_STEPS:,} are allowed: "
             f"use a dt of at least {math.ceil(least / unit * (1 - 1e-9)) * unit:.2g} s"
         )
+
+
+def digits(value):
+    """A number for a message: three significant digits, and never fewer than stand before the point."""
+    return f"{value:,.0f}" if abs(value) >= 999.5 else f"{value:.3g}"

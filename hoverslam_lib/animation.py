@@ -16,7 +16,7 @@ from matplotlib.path import Path as Outline
 from PIL import GifImagePlugin, Image
 
 from hoverslam_lib import _validate
-from hoverslam_lib.descent import Descent, fly
+from hoverslam_lib.descent import SOFT_LANDING, Descent, fly
 from hoverslam_lib.ignition import best_ignition
 from hoverslam_lib.plotting import Picture, use_style
 
@@ -243,7 +243,7 @@ def _cubic(s, start, end, slope_start, slope_end):
 def booster_scene(ax, flight, *, top):
     """A booster over the ground, its feet at the height of the flight; its size is not to scale.
 
-    The length of the plume follows the throttle. What comes after a hover above the ground is faint.
+    The length of the plume follows the throttle. What comes after a hover is faint, unless it is a soft landing.
 
     Parameters
     ----------
@@ -273,7 +273,7 @@ def booster_scene(ax, flight, *, top):
 
     def move(t):
         now = resample(flight, [t])
-        after = flight.hover is not None and t > flight.hover[0]
+        after = flight.outcome != SOFT_LANDING and flight.hover is not None and t > flight.hover[0]
         for part in (plume, legs, body):
             part.set_data([0], [now.h[0] / unit])
             part.set_alpha(0.3 if after else 1.0)

@@ -16,8 +16,10 @@ from hoverslam_lib.trajectory import time_grid
 SOFT_SPEED = 2.0
 """Touching down at this speed or slower is a soft landing [m/s]."""
 
-HOVER_HEIGHT = 0.01
-"""A hover no higher than this above the ground is a soft landing: the engine is cut there [m]."""
+SOFT_LANDING, CRASH = "soft landing", "crash"
+STOPPED_TOO_HIGH, OUT_OF_PROPELLANT = "stopped too high", "out of propellant"
+OUTCOMES = (SOFT_LANDING, CRASH, STOPPED_TOO_HIGH, OUT_OF_PROPELLANT)
+"""What can become of a flight."""
 
 
 @dataclass(frozen=True)
@@ -104,8 +106,38 @@ class Descent:
         return 2 * self.height / (down + math.sqrt(down**2 + 2 * self.planet.gravity(0.0) * self.height))
 
 
+def speed_after_fall(planet, h, v=0.0):
+    """Speed at which a booster touches down that falls without engine and without air: √(v² + 2·g·h).
+
+    This is what becomes of a booster whose engine is cut, or whose tank is empty, a little above the ground. g is
+    that of the ground; from there to some hundred metres neither the air nor the change of g matters much.
+
+    Parameters
+    ----------
+    planet : Planet
+    h : float or ndarray
+        Height at which the fall begins [m], at least 0.
+    v : float or ndarray
+        Velocity there [m/s], upward or downward.
+
+    Returns
+    -------
+    float or ndarray
+        [m/s], not negative.
+
+    Raises
+    ------
+    ValueError
+        If h is below 0.
+    """
+    if np.any(np.less(h, 0)):
+        raise ValueError(f"h must be at least 0 [m]; got {h!r}")
+    squared = v * v + 2 * planet.gravity(0.0) * h
+    return np.sqrt(squared) if isinstance(squared, np.ndarray) else math.sqrt(squared)
+
+
 class StepTooLargeError(ValueError):
-    """The numbers overflow within a step."""
+    """A step is so large that its numbers overflow, or that it ends on the ground going up."""
 
 
 LANDING_BURN = Descent(FALCON_9_LANDING_BURN, EARTH, height=10e3, velocity=-350.0)
@@ -124,14 +156,16 @@ class Flight:
     t, h, v, mass : ndarray, shape (n,)
         Time [s], height [m], velocity [m/s] and mass [kg] at the end of each step, the start first.
     throttle : ndarray, shape (n,)
-        From each of these times on, in [0, 1]; the last repeats the one before it.
+        From each of these times on, in [0, 1]; the last repeats the one before it, unless the engine was cut there.
     outcome : str
-        "soft landing", "crash", "stopped too high" (hovered above the ground, then climbed until the tank was empty)
-        or "out of propellant" (the tank was empty above the ground, without a hover).
+        One of `OUTCOMES`: "soft landing" (touched down at `SOFT_SPEED` or slower), "crash", "stopped too high"
+        (hovered, too high for a soft fall from there, then climbed until the tank was empty) or "out of propellant"
+        (the tank was empty too high for a soft fall, without a hover).
     touchdown : tuple of float or None
         (t, v) [s, m/s].
     hover : tuple of float or None
-        (t, h) [s, m] where v first changed from - to + with the engine on.
+        (t, h) [s, m] where v changed from - to + with the engine on, or where the engine came on at rest and thrust
+        was not below weight: where it was cut for a soft fall, else the first time.
     """
 
     descent: Descent
@@ -189,6 +223,10 @@ class Flight:
 def fly(descent, t_ignite, *, dt=0.02, method="rk4", controller=None):
     """Fly a descent: fall freely until t_ignite, then burn until the ground is reached or the tank is empty (§1.4).
 
+    The engine is cut at the first hover from which the fall to the ground is soft, `speed_after_fall` being at most
+    `SOFT_SPEED`; a tank that is empty so low ends softly too. That fall is the last of the flight's steps, and follows
+    the same formula.
+
     Steps have the length dt, but one ends exactly on ignition, where v changes sign, where the tank is empty and at
     the ground, so that within a step f is smooth and the method keeps its order.
 
@@ -213,7 +251,7 @@ def fly(descent, t_ignite, *, dt=0.02, method="rk4", controller=None):
     ------
     ValueError, TypeError
         If an argument is not allowed, if the flight would take more than ten million steps, if dt is so large that
-        the numbers overflow, or if the booster never comes down.
+        the numbers overflow or a climb ends on the ground, or if the booster never comes down.
     """
     if not isinstance(descent, Descent):
         raise TypeError(f"descent must be a Descent; got {descent!r}")
@@ -245,9 +283,9 @@ def finish(descent, t_ignite, coasted, end, controller=None, *, dt, step):
     fallen[:, :3], fallen[:, 3:] = coasted[:-1], (descent.booster.initial_mass, 0.0)
     t, h, v, mass, throttle = np.concatenate([fallen, burnt]).T
     if landed:
-        outcome = "soft landing" if abs(v[-1]) <= SOFT_SPEED else "crash"
+        outcome = SOFT_LANDING if abs(v[-1]) <= SOFT_SPEED else CRASH
     else:
-        outcome = "out of propellant" if hover is None else "stopped too high"
+        outcome = OUT_OF_PROPELLANT if hover is None else STOPPED_TOO_HIGH
     touchdown = (float(t[-1]), float(v[-1])) if landed else None
     return Flight(descent, t_ignite, t, h, v, mass, throttle, outcome, touchdown, hover)
 
@@ -270,7 +308,9 @@ def coast(descent, t_end, *, dt, step, start=None):
             return nodes, "space"
         while t < t_next:
             s, h, v, event = advance(step, f, t, h, v, t_next - t)
-            t = t_next if event is None else t + s
+            t = t_next if event is None else min(t + s, t_next)
+            if t == nodes[-1][0]:  # shorter than the last digit of t
+                nodes.pop()
             nodes.append((t, h, v))
             if event == "ground":
                 return nodes, "ground"
@@ -288,21 +328,38 @@ def _burn(descent, t, h, v, controller, *, dt, step):
             f = descent.acceleration(throttle=throttle, mass=mass, since=since)
             t_empty = since + (mass - booster.dry_mass) / rate if rate else math.inf
         t_next = min(t_next, t_empty)
-        while t < t_next:
+        rests = v == 0 and throttle > 0 and f(t, h, v) >= 0
+        while True:
+            if rests:
+                if fall := _soft_fall(descent.planet, t, h, v, mass):
+                    return [*nodes, *fall], True, (t, h)
+                hover = hover or (t, h)
+            if t >= t_next:
+                break
             nodes.append((t, h, v, mass, throttle))
             falling = v < 0
             s, h, v, event = advance(step, f, t, h, v, t_next - t)
-            t = t_next if event is None else t + s
+            t = t_next if event is None else min(t + s, t_next)
+            if t == nodes[-1][0]:  # shorter than the last digit of t
+                nodes.pop()
             mass = mass_then - rate * (t - since)
-            hovers = event == "turn" and falling and throttle > 0
-            if hovers and hover is None:
-                hover = (t, h)
-            if event == "ground" or (hovers and h <= HOVER_HEIGHT):
+            if event == "ground":
                 return [*nodes, (t, h, v, mass, throttle)], True, hover
+            rests = event == "turn" and falling and throttle > 0
         if t >= t_empty:
-            # a tank that only just suffices runs dry within rounding of the ground
-            landed = h <= HOVER_HEIGHT and abs(v) <= SOFT_SPEED
-            return [*nodes, (t, h, v, booster.dry_mass, throttle)], landed, hover
+            fall = _soft_fall(descent.planet, t, h, v, booster.dry_mass)
+            return [*nodes, *(fall or [(t, h, v, booster.dry_mass, throttle)])], bool(fall), hover
+
+
+def _soft_fall(planet, t, h, v, mass):
+    """The nodes of a fall with the engine off to the ground, this one first; none if it would not end softly."""
+    speed = speed_after_fall(planet, h, v)
+    if speed > SOFT_SPEED:
+        return []
+    t_ground = t + (v + speed) / planet.gravity(0.0)
+    ground = (t_ground, 0.0, 0.0 - speed, mass, 0.0)
+    # time stands still where the fall is shorter than the last digit of t
+    return [(t, h, v, mass, 0.0), ground] if t_ground > t else [ground]
 
 
 def advance(step, f, t, h, v, dt, *, ground=0.0):
@@ -320,6 +377,11 @@ def advance(step, f, t, h, v, dt, *, ground=0.0):
         State at its end [m, m/s].
     event : str or None
         "turn" (v has changed sign; it is 0 now), "ground" (h is 0 now), or None.
+
+    Raises
+    ------
+    StepTooLargeError
+        If the numbers overflow, or if the step ends on the ground going up.
     """
 
     try:
@@ -333,7 +395,7 @@ def advance(step, f, t, h, v, dt, *, ground=0.0):
         return dt, h_end, v_end, None
 
     def to(s):
-        return step(f, t, h, v, s)
+        return step(f, t, h, v, s) if s else (h, v)  # an implicit method would divide by zero
 
     end = dt
     if turns:
@@ -342,7 +404,12 @@ def advance(step, f, t, h, v, dt, *, ground=0.0):
         if h_end >= ground:
             return end, h_end, 0.0, "turn"
     end = bracketed_root(lambda s: to(s)[0] - ground, 0.0, end, h - ground, h_end - ground)
-    return end, ground, to(end)[1], "ground"
+    v_end = to(end)[1]
+    if v_end > 0:
+        raise StepTooLargeError(
+            f"a climb from t = {t:g} s ends on the ground: dt = {dt:g} s is too large for this method"
+        )
+    return end, ground, v_end, "ground"
 
 
 def _ask(controller, t, h, v, mass):

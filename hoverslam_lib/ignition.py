@@ -13,7 +13,10 @@ from hoverslam_lib import _validate
 from hoverslam_lib._roots import bracketed_root
 from hoverslam_lib.descent import Descent, StepTooLargeError, advance, coast, finish, fly
 from hoverslam_lib.integrators import dop8, rk4, step_function
-from hoverslam_lib.trajectory import time_grid
+from hoverslam_lib.trajectory import rounding, time_grid
+
+NEAR_ZERO = 1e-6
+"""A hover no further from the ground than this share of the height at the start is taken for one at the ground."""
 
 
 class NoSoftLanding(ValueError):
@@ -22,11 +25,12 @@ class NoSoftLanding(ValueError):
     Attributes
     ----------
     reason : str
-        "thrust" (not above the dry weight), "too late" (already at t = 0), "tank" (too small) or
-        "never comes down".
+        "thrust" (not above the dry weight), "too late" (already at t = 0), "too weak" (to stop at the ground: a burn
+        stops far above it, or only below it), "tank" (too small) or "never comes down".
     amount : float
         By how much: the thrust that is missing [N], the depth below the ground at which a burn from t = 0 would stop
-        [m], the propellant that is missing [kg], the speed above escape speed [m/s].
+        [m] (inf: see `hover_height`), the height at which the latest burn that stops above the ground does so [m], the
+        propellant that is missing [kg], the speed above escape speed [m/s].
     """
 
     def __init__(self, reason, amount, message):
@@ -141,7 +145,7 @@ class FreeFall:
     def _until(self, t_ignite):
         """What `coast` returns: the last step before t_ignite is taken anew, to end on it."""
         t_ignite = _validate.number("t_ignite", t_ignite, "s", least=0)
-        i = int(np.searchsorted(self.flight.t, t_ignite - 1e-9 * self._dt))
+        i = int(np.searchsorted(self.flight.t, t_ignite - rounding(0.0, t_ignite, self._dt)))
         if i == len(self._nodes):
             return self._nodes, "ground"
         before = max(i - 1, 0)
@@ -196,7 +200,8 @@ def best_ignition(descent):
             "tank",
             missing,
             f"the tank is too small: the burn takes {burn_time:.2f} s, the tank is empty after "
-            f"{descent.booster.burn_duration:.2f} s; {missing:.0f} kg of propellant are missing, and more to lift them",
+            f"{descent.booster.burn_duration:.2f} s; {_validate.digits(missing)} kg of propellant are missing, "
+            "and more to lift them",
         )
     return found
 
@@ -248,12 +253,14 @@ def _require_descent(descent):
 
 def _require_thrust(descent):
     booster = descent.booster
-    missing = descent.weight(0.0, booster.dry_mass) - booster.thrust
+    weight = descent.weight(0.0, booster.dry_mass)
+    missing = weight - booster.thrust
     if missing >= 0:
+        short = (
+            f"{booster.thrust:.6g} N is {_validate.digits(missing)} N too little" if missing else "it only equals it"
+        )
         raise NoSoftLanding(
-            "thrust",
-            missing,
-            f"thrust must exceed the dry weight on the ground: {booster.thrust:.6g} N is {missing:.3g} N too little",
+            "thrust", missing, f"thrust must exceed the dry weight on the ground, {weight:.6g} N: {short}"
         )
 
 
@@ -284,7 +291,8 @@ def _solve(descent, step, fraction, near=None):
     if end == "space":
         h = descent.height
         excess = descent.velocity - math.sqrt(2 * descent.planet.gravity(h) * (descent.planet.radius + h))
-        raise NoSoftLanding("never comes down", excess, f"the booster never comes down: {excess:.1f} m/s above escape")
+        above = _validate.digits(excess)
+        raise NoSoftLanding("never comes down", excess, f"the booster never comes down: {above} m/s above escape speed")
     f = descent.acceleration()
 
     @cache
@@ -302,14 +310,28 @@ def _solve(descent, step, fraction, near=None):
         low, high = max(near.t_ignite - 1e-5 * t_end, 0.0), min(near.t_ignite + 1e-5 * t_end, t_end)
         bracket = low, high, missed_by(low), missed_by(high)
     if bracket is None or not bracket[2] >= 0 >= bracket[3]:
-        bracket = _bracket(missed_by, nodes)
+        bracket = _bracket(missed_by, nodes, _deepest(descent.planet))
     t_ignite = bracketed_root(missed_by, *bracket, xtol=(1e-6 if near is None else 1e-12) * t_end)
+    if near is not None and abs(missed_by(t_ignite)) > NEAR_ZERO * descent.height:  # steep, or no root but a jump
+        t_ignite = bracketed_root(missed_by, *bracket)
+        if abs(missed_by(t_ignite)) > NEAR_ZERO * descent.height:
+            raise _too_weak(t_ignite, missed_by(max(t_ignite - 4 * math.ulp(t_ignite), 0.0)))
     h, v, t_touchdown, _ = lit(t_ignite)
     left = descent.booster.propellant_mass - descent.booster.burn_rate * (t_touchdown - t_ignite)
     return Ignition(t_ignite, h, v, t_touchdown, left)
 
 
-def _bracket(missed_by, nodes):
+def _too_weak(t_ignite, height):
+    """The stop jumps where gravity, which grows on the way down, just outweighs the thrust."""
+    return NoSoftLanding(
+        "too weak",
+        height,
+        f"the engine is too weak to stop at the ground: lit up to {t_ignite:.6g} s, the booster stops "
+        f"{_validate.digits(height)} m above it or higher; lit later, it does not stop above it",
+    )
+
+
+def _bracket(missed_by, nodes, deepest):
     """Two ignition times between which the hover height changes sign, and the hover heights there."""
     high, g_high = nodes[-1][0], missed_by(nodes[-1][0])
     top = next(i for i, (_, _, v) in enumerate(nodes) if v <= 0)
@@ -319,17 +341,22 @@ def _bracket(missed_by, nodes):
         if g >= 0:
             return t, high, g, g_high
         high, g_high = t, g
+    depth = _validate.digits(-g_high) if g_high > -math.inf else f"more than {_validate.digits(-deepest)}"
     raise NoSoftLanding(
         "too late",
         -g_high,
-        f"too late already at t = 0: a burn from the start on would stop {-g_high:.1f} m below the ground",
+        f"too late already at t = 0: a burn from the start on would stop {depth} m below the ground",
     )
+
+
+def _deepest(planet):
+    """How far the air, or the planet where there is none, can be continued below the ground [m], negative."""
+    return -2 * planet.scale_height if planet.surface_density else -planet.radius / 2
 
 
 def _stop(descent, t, h, v, *, dt, step):
     """When and where a full burn from (t, h, v) comes to rest, the ground ignored: (t, h). See `hover_height`."""
-    booster, planet = descent.booster, descent.planet
-    deepest = -2 * planet.scale_height if planet.surface_density else -planet.radius / 2
+    booster, planet, deepest = descent.booster, descent.planet, _deepest(descent.planet)
     if v == 0 and descent.acceleration(throttle=1.0)(0.0, h, v) >= 0:
         return t, h
     t_empty = t + booster.burn_duration
@@ -343,7 +370,7 @@ def _stop(descent, t, h, v, *, dt, step):
             while t < t_next:
                 falling = v < 0
                 s, h, v, event = advance(step, f, t, h, v, t_next - t, ground=-math.inf)
-                t = t_next if event is None else t + s
+                t = t_next if event is None else min(t + s, t_next)
                 if event == "turn" and falling:
                     return t, h
                 if h < deepest:

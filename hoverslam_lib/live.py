@@ -15,10 +15,13 @@ from ipywidgets import Image, Layout, VBox
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from PIL import Image as Pixels
 
-from hoverslam_lib.descent import SOFT_SPEED
+from hoverslam_lib.descent import OUT_OF_PROPELLANT, SOFT_LANDING, SOFT_SPEED, STOPPED_TOO_HIGH, speed_after_fall
 from hoverslam_lib.plotting import Picture, _png
 
 STILL = "Run this cell to make it live."
+
+LOW = 100.0
+"""From hovers up to here [m] the fall is told: from much higher, the air would have its say."""
 
 _SHOWN = {}  # by cell and run: so that a cell run again takes its former figure out of memory
 
@@ -153,18 +156,29 @@ def verdict(flight, height):
     -------
     str
     """
-    if flight.outcome == "soft landing":
-        return f"soft landing with {abs(flight.touchdown[1]):.2f} m/s, hover height {height:+.3f} m"
-    if flight.outcome == "stopped too high":
-        return f"stopped {_length(flight.hover[1])} too high"
-    if flight.outcome == "out of propellant":
-        return f"tank empty {_length(flight.h[-1])} above the ground, at {flight.v[-1]:.0f} m/s"
+    if flight.outcome == SOFT_LANDING:
+        said = f"{SOFT_LANDING} with {abs(flight.touchdown[1]):.2f} m/s"
+        if flight.hover and flight.hover[0] == flight.t[-2]:
+            return f"{said}, engine cut at hover height {flight.hover[1]:+.3f} m"
+        if flight.mass[-1] == flight.descent.booster.dry_mass:
+            said += ", tank empty"
+        return f"{said}, hover height {height:+.3f} m" if math.isfinite(height) else said
+    if flight.outcome == STOPPED_TOO_HIGH:
+        h = flight.hover[1]
+        if h > LOW:
+            return f"stopped {_length(h)} too high"
+        speed = speed_after_fall(flight.descent.planet, h)
+        return f"stopped {_length(h)} too high, and with the engine cut there, a crash with {speed:.1f} m/s"
+    if flight.outcome == OUT_OF_PROPELLANT:
+        v = round(flight.v[-1], 1) + 0.0  # no -0.0
+        return f"tank empty {_length(flight.h[-1])} above the ground, at {v:.{0 if abs(v) >= 10 else 1}f} m/s"
     braked = f"hover height −{_length(-height)}, " if -math.inf < height else ""
-    return f"{braked}{-flight.touchdown[1] - SOFT_SPEED:.1f} m/s too fast at the ground"
+    excess = -flight.touchdown[1] - SOFT_SPEED
+    return f"{braked}{f'{excess:.1f}' if excess >= 0.95 else f'{excess:.2g}'} m/s too fast at the ground"
 
 
 def _length(metres):
-    return f"{metres / 1e3:.2f} km" if metres >= 1e3 else f"{metres:.3g} m"
+    return f"{metres / 1e3:.2f} km" if metres >= 999.5 else f"{metres:.3g} m"
 
 
 def _encoded(pixels):

@@ -1,5 +1,6 @@
 """A run of a one-step method over an interval of time."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -41,18 +42,25 @@ class Trajectory:
 def time_grid(t0, t_end, dt):
     """Yield t0 + dt, t0 + 2·dt, … and last t_end itself, so that the last step is as long as is left.
 
-    A remainder below a billionth of a step is rounding and makes no step of its own. t_end may be infinite; after
-    ten million steps the grid raises ValueError.
+    Each is later than the one before, also where dt is lost in the last digit of t0. A remainder that is `rounding`
+    makes no step of its own. t_end may be infinite; after ten million steps the grid raises ValueError.
     """
-    steps, most = (t_end - t0) / dt - 1e-9, _validate.MAX_STEPS
-    i = 1
+    steps, most = (t_end - t0 - rounding(t0, t_end, dt)) / dt, _validate.MAX_STEPS
+    t, i = t0, 1
     while i < steps:
         if i > most:
             _validate.step_count(i * dt, dt)
-        yield t0 + i * dt
+        before, t = t, t0 + i * dt
+        if t > before:
+            yield t
         i += 1
     if t_end > t0:
         yield t_end
+
+
+def rounding(t0, t_end, dt):
+    """What is no time between t0 and t_end [s]: a billionth of a step, or some last digits where those are more."""
+    return max(1e-9 * dt, 2 * math.ulp(max(abs(t0), abs(t_end) if t_end < math.inf else 0.0)))
 
 
 def integrate(f, h0, v0, *, dt, t_end, t0=0.0, method="rk4"):

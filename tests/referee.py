@@ -140,19 +140,33 @@ def best_ignition(descent, low, high):
 
 @dataclass
 class Flight:
+    outcome: str = ""
     touchdown: tuple | None = None  # (t, v)
     hover: tuple | None = None  # (t, h)
     burnout: tuple | None = None  # (t, h, v)
     mesh: list = field(default_factory=list)  # (t, h, v, mass, throttle)
 
 
+def soft_fall(descent, t, h, v):
+    """(t, v) of a touchdown after a fall in empty space at the gravity of the ground, if it is soft."""
+    g = G * descent.planet.mass / descent.planet.radius**2
+    if v * v + 2 * g * h > 2.0**2:
+        return None
+    apex = h + v * v / (2 * g)  # reached at t + v/g: later if it rises, earlier if it falls already
+    return t + v / g + math.sqrt(2 * apex / g), -math.sqrt(2 * g * apex)
+
+
 def fly(descent, t_ignite, *, controller=None, every=math.inf):
-    """A whole flight, to the ground or to burnout above it; the controller is asked at ignition and then `every` s."""
+    """A whole flight; the controller is asked at ignition and then `every` s.
+
+    It ends at the ground or at burnout, or with a soft fall from there or from a hover.
+    """
     booster, flight = descent.booster, Flight()
     fall, mass = free_fall(descent), initial_mass(descent)
     if t_ignite is None or t_ignite >= fall[-1][0]:
         flight.mesh = [(*node, mass, 0.0) for node in fall]
         flight.touchdown = fall[-1][0], fall[-1][2]
+        flight.outcome = "soft landing" if fall[-1][2] >= -2 else "crash"
         return flight
 
     flight.mesh = [(*node, mass, 0.0) for node in fall if node[0] < t_ignite]
@@ -175,13 +189,30 @@ def fly(descent, t_ignite, *, controller=None, every=math.inf):
             node = mesh[-1]
             if landed:
                 flight.touchdown = node[0], node[2]
+                flight.outcome = "soft landing" if node[2] >= -2 else "crash"
                 return flight
-            if turned and falling and throttle > 0 and flight.hover is None:
-                flight.hover = node[:2]
+            if turned and falling and throttle > 0:
+                flight.touchdown = soft_fall(descent, *node)
+                if flight.touchdown or flight.hover is None:
+                    flight.hover = node[:2]
+                if flight.touchdown:
+                    return ended_softly(flight)
         mass = mass_then - rate * (node[0] - since)
         if node[0] >= t_empty:
             flight.burnout = node
+            flight.touchdown = soft_fall(descent, *node)
+            if flight.touchdown:
+                return ended_softly(flight)
+            flight.outcome = "stopped too high" if flight.hover else "out of propellant"
             return flight
+
+
+def ended_softly(flight):
+    t, v = flight.touchdown
+    flight.outcome = "soft landing"
+    flight.mesh[-1] = *flight.mesh[-1][:4], 0.0
+    flight.mesh.append((t, 0.0, v, flight.mesh[-1][3], 0.0))
+    return flight
 
 
 def peak_acceleration(descent, t_ignite):

@@ -160,6 +160,20 @@ def test_scene_stands_on_the_height_and_fades_after_a_hover():
         assert body.get_alpha() == alpha
 
 
+def test_a_soft_landing_with_the_engine_cut_does_not_fade():
+    flight = fly(Descent(), 60.211)
+    assert flight.outcome == "soft landing"
+    t_hover, h_hover = flight.hover
+    move = animation.booster_scene(Figure().add_subplot(), flight, top=2 * h_hover)
+    *_, body = move(flight.t[-1])
+    assert body.get_alpha() == 1
+    assert body.get_ydata()[0] == 0
+    # half-way through the fall it has lost a quarter of the height, with the engine off
+    half = animation.resample(flight, [(t_hover + flight.t[-1]) / 2])
+    assert half.h[0] == pytest.approx(0.75 * h_hover, rel=1e-3)
+    assert half.throttle[0] == 0
+
+
 def test_plume_follows_the_throttle(landed):
     move = animation.booster_scene(Figure().add_subplot(), landed, top=20e3)
     half = fly(Descent(), 59.0, controller=lambda t, h, v, mass: 0.5)

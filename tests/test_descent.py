@@ -8,6 +8,7 @@ import referee
 from scipy.optimize import brentq
 
 from hoverslam_lib import (
+    EARTH,
     FALCON_9,
     FALCON_9_LANDING_BURN,
     LANDING_BURN,
@@ -20,8 +21,17 @@ from hoverslam_lib import (
     fly,
     hover_height,
     observed_order,
+    speed_after_fall,
 )
-from hoverslam_lib.descent import HOVER_HEIGHT, SOFT_SPEED
+from hoverslam_lib.descent import (
+    CRASH,
+    OUT_OF_PROPELLANT,
+    OUTCOMES,
+    SOFT_LANDING,
+    SOFT_SPEED,
+    STOPPED_TOO_HIGH,
+    StepTooLargeError,
+)
 
 PAPER = Descent()
 OPTIMUM = referee.best_ignition(PAPER, 60.0, 60.5)
@@ -218,29 +228,177 @@ def test_near_the_optimum_every_flight_is_that_of_the_independent_one(dt, method
             assert flight.outcome == ("soft landing" if v >= -SOFT_SPEED else "crash")
         else:
             assert flight.hover[1] == pytest.approx(h, rel=0, abs=1e-10 + 5e-6 * dt**4)
-            assert flight.outcome == ("soft landing" if h <= HOVER_HEIGHT else "stopped too high")
+            assert flight.outcome == ("soft landing" if h <= 0.2041 else "stopped too high")
 
 
 # ---- what a flight says -------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("dt", [0.02, 0.3])
-@pytest.mark.parametrize("height", [0.0095, 1e-4])
-def test_a_hover_up_to_a_centimetre_is_a_touchdown_too(dt, height):
-    t_ignite = brentq(lambda t: hover_height(PAPER, t, dt=dt) - height, 60.0, 60.5, xtol=1e-12)
-    flight = fly(PAPER, t_ignite, dt=dt)
-    assert flight.outcome == "soft landing"
-    assert flight.hover == (flight.t[-1], flight.h[-1])
-    assert flight.hover[1] == pytest.approx(height, abs=1e-7)
-    assert flight.touchdown == (flight.t[-1], 0.0)
+SURFACE_GRAVITY = {EARTH: 9.79840, MARS: 3.72798, MOON: 1.62427}
 
 
-def test_a_hover_above_a_centimetre_is_too_high():
-    t_ignite = brentq(lambda t: hover_height(PAPER, t) - 0.0105, 60.0, 60.5, xtol=1e-12)
-    flight = fly(PAPER, t_ignite)
-    assert flight.outcome == "stopped too high"
-    assert flight.touchdown is None
-    assert flight.hover[1] == pytest.approx(0.0105, abs=1e-7)
+def lit_for(descent, height, low, high):
+    """Ignition time of the independent flight that hovers so high."""
+    return brentq(lambda t: referee.hover(descent, t)[1] - height, low, high, xtol=1e-12, rtol=1e-14)
+
+
+def check_soft_or_not(flight, reference):
+    """The same ending as the independent one; where the engine ended above the ground, the fall is the last step."""
+    assert flight.outcome == reference.outcome
+    assert bool(flight.touchdown) == bool(reference.touchdown)
+    assert bool(flight.hover) == bool(reference.hover)
+    if flight.hover:
+        assert flight.hover == pytest.approx(reference.hover, rel=0, abs=1e-6)
+    check_consistent(flight)
+    if flight.touchdown:
+        assert flight.touchdown == pytest.approx(reference.touchdown, rel=1e-9, abs=1e-6)
+        assert list(flight.throttle[-2:]) == [0, 0]
+        assert flight.mass[-1] == flight.mass[-2] == pytest.approx(reference.mesh[-2][3], rel=1e-9)
+        assert (flight.t[-2], flight.h[-2]) == pytest.approx(reference.mesh[-2][:2], rel=0, abs=1e-6)
+
+
+@pytest.mark.parametrize("share", [1e-4, 0.05, 0.5, 0.9999, 1.0001, 2.0])
+@pytest.mark.parametrize(
+    ("descent", "low", "high"),
+    [(PAPER, 60.0, 60.5), (Descent(planet=MARS), 60.0, 64.003), (Descent(planet=MOON), 60.0, 66.29)],
+)
+def test_a_hover_is_a_soft_landing_up_to_where_the_fall_from_it_is(descent, low, high, share):
+    limit = 2.0**2 / 2 / SURFACE_GRAVITY[descent.planet]  # 0.20 m, 0.54 m, 1.23 m
+    t_ignite = lit_for(descent, share * limit, low, high)
+    flight = fly(descent, t_ignite, dt=0.05, method="dop8")
+    assert flight.outcome == (SOFT_LANDING if share < 1.0 else STOPPED_TOO_HIGH)
+    check_soft_or_not(flight, referee.fly(descent, t_ignite))
+    if share < 1:
+        assert flight.touchdown[1] == pytest.approx(-2.0 * math.sqrt(share), rel=1e-4, abs=1e-4)
+        assert flight.hover == (flight.t[-2], flight.h[-2])
+
+
+@pytest.mark.parametrize("share", [0.95, 1 - 1e-6, 1 + 1e-6, 1.5])
+@pytest.mark.parametrize("velocity", [-1.8, -1.0, 0.6])  # the last still climbs when its tank is empty
+@pytest.mark.parametrize("planet", SURFACE_GRAVITY)
+def test_a_tank_empty_above_the_ground_is_a_soft_landing_if_the_fall_from_there_is(planet, velocity, share):
+    booster = replace(FALCON_9, propellant_mass=2.0)  # a burn of 1.4 ms
+
+    def descent(height):
+        return Descent(booster, planet, height, velocity)
+
+    def energy(height):
+        _, h, v = referee.fly(descent(height), 0.0).burnout
+        return v * v / 2 + h * 6.6743e-11 * planet.mass / planet.radius**2
+
+    height = brentq(lambda height: energy(height) - share * 2.0**2 / 2, 3e-3, 5.0, xtol=1e-14)
+    flight, reference = fly(descent(height), 0.0, dt=1e-3), referee.fly(descent(height), 0.0)
+    check_soft_or_not(flight, reference)
+    assert flight.outcome == (SOFT_LANDING if share < 1 else OUT_OF_PROPELLANT)
+    if flight.touchdown:
+        assert flight.hover is None
+        assert flight.mass[-1] == booster.dry_mass
+
+
+def test_the_engine_is_cut_at_the_first_hover_that_is_low_enough():
+    def hops(t, h, v, mass):
+        """Stop some 7 m up, fall, and brake again near the ground."""
+        return 1.0 if t < 72.0 or (v < 0 and h < v * v / 300 - 0.02 * v) else 0.0
+
+    flight = fly(PAPER, 60.205, controller=hops)
+    stops = flight.h[1:][(flight.v[1:] == 0) & (flight.throttle[:-1] == 1)]
+    assert len(stops) > 1
+    assert np.all(stops[:-1] > 0.2041)
+    assert flight.hover[1] == stops[-1] < 0.2041
+    check_soft_or_not(flight, referee.fly(PAPER, 60.205, controller=hops, every=0.02))
+
+
+def test_a_hover_on_the_ground_itself_ends_the_flight_there():
+    def even(f, t, h, v, dt):
+        """Braking with 2 m/s² whatever the forces are: from 4 m and -4 m/s exactly to rest on the ground."""
+        return h + dt * v + dt * dt, v + 2 * dt
+
+    flight = fly(Descent(height=4.0, velocity=-4.0), 0.0, dt=0.75, method=even)
+    assert flight.outcome == SOFT_LANDING
+    assert flight.touchdown == (2.0, 0.0)
+    assert flight.hover == (2.0, 0.0)
+    assert math.copysign(1.0, flight.v[-1]) == 1.0
+    assert np.all(np.diff(flight.t) > 0)
+
+
+def even(f, t, h, v, dt):
+    """A step with -2 m/s², whatever the forces are, so that an apex falls exactly on the end of a step."""
+    return h + dt * v - dt * dt, v - 2 * dt
+
+
+@pytest.mark.parametrize(
+    ("descent", "t_ignite", "method", "height"),
+    [(Descent(height=1000.0, velocity=0.0), 0.0, "rk4", 1000.0), (Descent(height=1.0, velocity=4.0), 2.0, even, 5.0)],
+)
+def test_at_rest_on_ignition_it_hovers_there(descent, t_ignite, method, height):
+    flight = fly(descent, t_ignite, dt=0.5, method=method)
+    assert flight.hover == (t_ignite, height)
+    assert method == even or flight.outcome == STOPPED_TOO_HIGH
+    assert hover_height(descent, t_ignite, dt=0.5, method=method) == height
+    weak = replace(descent, booster=replace(FALCON_9, thrust=500e3))  # below the weight: it falls on
+    assert fly(weak, t_ignite, dt=0.5, method=method).hover != (t_ignite, height)
+
+
+def test_a_controller_that_lights_the_engine_at_rest_hovers_there():
+    asked = iter([0.0, 1.0])
+    flight = fly(
+        Descent(height=1.0, velocity=4.0), 1.5, dt=0.5, method=even, controller=lambda *state: next(asked, 0.5)
+    )
+    assert flight.hover == (2.0, 5.0)
+
+
+def test_at_rest_low_enough_the_engine_is_cut_at_once():
+    flight = fly(Descent(height=0.1, velocity=0.0), 0.0)
+    assert flight.outcome == SOFT_LANDING
+    assert flight.hover == (0.0, 0.1)
+    assert flight.touchdown == pytest.approx((math.sqrt(0.2 / 9.7984), -math.sqrt(0.2 * 9.7984)), rel=1e-5)
+    assert flight.mass[-1] == FALCON_9.initial_mass
+
+
+LIGHT = Descent(Booster(20.0, 20.0, 0.2, 600.0, 0.5, 1.0), EARTH, 100.0, 200.0)
+
+
+@pytest.mark.parametrize("t_ignite", [None, 0.0])
+def test_a_climb_that_ends_on_the_ground_is_a_step_too_large(t_ignite):
+    # rk4 with so long a step in thick air ends below the ground, and faster upward than it began
+    with pytest.raises(StepTooLargeError, match=r"climb from t = .* ends on the ground: dt = 0.5 s is too large"):
+        fly(LIGHT, t_ignite, dt=0.5)
+    assert fly(LIGHT, t_ignite, dt=0.05).touchdown is None or fly(LIGHT, t_ignite, dt=0.05).touchdown[1] < 0
+
+
+@pytest.mark.parametrize("method", ["rk4", "implicit_euler"])
+@pytest.mark.parametrize("digits", range(-3, 4))
+def test_time_goes_on_however_near_ignition_is_to_an_apex(method, digits):
+    apex = fly(ASCENDING, None, dt=0.3, method=method)
+    t_apex = float(apex.t[np.flatnonzero(apex.v == 0)[0]])
+    t_ignite = t_apex + digits * math.ulp(t_apex)
+    flight = fly(ASCENDING, t_ignite, dt=0.3, method=method)
+    assert np.all(np.diff(flight.t) > 0)
+    assert (flight.hover is None) == math.isinf(hover_height(ASCENDING, t_ignite, dt=0.3, method=method))
+
+
+def test_a_soft_landing_without_an_engine():
+    flight = fly(Descent(height=0.2, velocity=0.0), None)
+    assert flight.outcome == SOFT_LANDING
+    assert flight.touchdown[1] == pytest.approx(-math.sqrt(2 * 9.798 * 0.2), rel=1e-4)
+    assert fly(Descent(height=0.21, velocity=0.0), None).outcome == CRASH
+
+
+@pytest.mark.parametrize("v", [0.0, -1.5, 1.5])
+@pytest.mark.parametrize("planet", SURFACE_GRAVITY)
+def test_speed_after_fall_conserves_energy(planet, v):
+    heights = np.array([0.0, 0.2, 2.6, 100.0])
+    speeds = speed_after_fall(planet, heights, v)
+    assert speeds**2 / 2 == pytest.approx(v * v / 2 + SURFACE_GRAVITY[planet] * heights, rel=2e-4)
+    assert [speed_after_fall(planet, float(h), v) for h in heights] == speeds.tolist()
+    assert type(speed_after_fall(planet, 2.6, v)) is float
+
+
+def test_speed_after_fall_is_that_of_a_flight_without_air():
+    descent = Descent(replace(FALCON_9, drag_coefficient=0.0), height=2.6, velocity=0.0)
+    assert speed_after_fall(descent.planet, 2.6) == pytest.approx(-fly(descent, None).touchdown[1], rel=1e-6)
+    with pytest.raises(ValueError, match=r"h must be at least 0 \[m\]; got -0.1"):
+        speed_after_fall(descent.planet, -0.1)
 
 
 @pytest.mark.parametrize(("depth", "outcome"), [(0.99, "soft landing"), (1.01, "crash")])
@@ -347,6 +505,7 @@ def test_a_step_ends_on_the_apex_in_air(descent, t_ignite):
         (PAPER, None),  # at touchdown
         (PAPER, 40.0),  # at burnout
         (PAPER, 60.19317),  # within the burn
+        (PAPER, 60.211),  # just before the engine is cut
         (PAPER, 66.0),  # at ignition
         (LANDING_BURN, None),
         (Descent(planet=MOON), 66.0),
@@ -410,13 +569,14 @@ def test_burn_in_empty_space_follows_the_rocket_equation(t_ignite):
     start = Descent(booster, nowhere, height=50e3, velocity=-1_000.0)
     flight = fly(start, t_ignite)
     exhaust, m0, rate = 2_500.0, 5_000.0, 200.0
-    s = flight.t[flight.t >= t_ignite] - t_ignite
+    assert flight.outcome == SOFT_LANDING  # where nothing weighs anything, a fall from any height is soft
+    burn = (flight.t >= t_ignite) & (flight.t <= flight.hover[0])
+    s = flight.t[burn] - t_ignite
     log = np.log(m0 / (m0 - rate * s))
     v = -1_000 + exhaust * log
     h = 50e3 - 1_000 * (t_ignite + s) + exhaust * (s - (m0 / rate - s) * log)
-    assert flight.v[flight.t >= t_ignite] == pytest.approx(v, rel=0, abs=1e-8)
-    assert flight.h[flight.t >= t_ignite] == pytest.approx(h, rel=0, abs=1e-7)
-    assert flight.outcome == "stopped too high"
+    assert flight.v[burn] == pytest.approx(v, rel=0, abs=1e-8)
+    assert flight.h[burn] == pytest.approx(h, rel=0, abs=1e-7)
     assert flight.hover[0] == pytest.approx(t_ignite + (m0 / rate) * (1 - math.exp(-1_000 / exhaust)), abs=1e-9)
 
 
@@ -446,13 +606,14 @@ def check_consistent(flight):
     dry, full = flight.descent.booster.dry_mass, flight.descent.booster.initial_mass
     assert all(np.all(np.isfinite(x)) for x in (t, h, v, mass, flight.throttle, flight.felt_acceleration))
     assert math.isfinite(flight.peak_acceleration)
-    assert np.all(np.diff(t) >= 0)
+    assert np.all(np.diff(t) > 0)
     assert np.all(h >= 0)
     assert np.all((mass >= dry * (1 - 1e-12)) & (mass <= full))
+    assert flight.outcome in OUTCOMES
     assert (flight.touchdown is None) == (flight.outcome in ("stopped too high", "out of propellant"))
     if flight.touchdown:
         assert flight.touchdown == (t[-1], v[-1])
-        assert h[-1] <= HOVER_HEIGHT
+        assert h[-1] == 0
         assert v[-1] <= 0
         assert (flight.outcome == "soft landing") == (abs(v[-1]) <= SOFT_SPEED)
     else:

@@ -17,6 +17,7 @@ from hoverslam_lib import (
     LANDING_BURN,
     MARS,
     MOON,
+    Booster,
     Descent,
     FreeFall,
     Ignition,
@@ -27,6 +28,7 @@ from hoverslam_lib import (
     hover_height,
     ignition_table,
 )
+from hoverslam_lib._validate import digits
 
 PAPER = Descent()
 VENUS = Planet(mass=4.867e24, radius=6.0518e6, surface_density=65.0, scale_height=15.9e3)
@@ -45,6 +47,8 @@ DESCENTS = {
     "dropped from 50 m, one engine": Descent(FALCON_9_LANDING_BURN, height=50.0, velocity=0.0),
     "dropped from 10 cm": Descent(height=0.1, velocity=0.0),
     "slow, from high up": Descent(height=150e3, velocity=-1.0),
+    # a coarse step of their climb ends on the ground
+    "light, ascending": Descent(Booster(20.0, 20.0, 0.2, 600.0, 0.5, 1.0), EARTH, 100.0, 200.0),
     "dense air": Descent(planet=VENUS),
     "dense air, one engine": Descent(FALCON_9_LANDING_BURN, VENUS),
     "dense air, little time": Descent(planet=replace(VENUS, surface_density=20.0), height=1e3, velocity=-30.0),
@@ -164,10 +168,38 @@ def test_a_tank_that_is_too_small_says_by_how_much(just_enough, short):
     descent = Descent(replace(FALCON_9, propellant_mass=just_enough - short))
     with pytest.raises(NoSoftLanding, match="the tank is too small") as caught:
         best_ignition(descent)
+    assert " 0 kg" not in str(caught.value)
     carried = descent.booster.propellant_mass
     assert caught.value.reason == "tank"
     assert caught.value.amount == pytest.approx(burnt(carried) - carried, rel=0, abs=1e-6)
     assert 0.3 * short < caught.value.amount < short
+
+
+def test_thrust_that_equals_the_dry_weight():
+    with pytest.raises(NoSoftLanding, match=r"dry weight on the ground, 266516 N: it only equals it") as caught:
+        best_ignition(Descent(replace(FALCON_9, thrust=PAPER.weight(0.0, FALCON_9.dry_mass))))
+    assert caught.value.amount == 0
+
+
+@pytest.mark.parametrize(
+    ("descent", "message"),
+    [
+        (Descent(height=100.0, velocity=-40e3), "more than 16,800 m below the ground"),
+        (Descent(planet=MOON, height=100.0, velocity=-40e3), "more than 868,700 m below the ground"),
+        (Descent(height=100.0, velocity=-2000.0), r" [\d,]{5,6} m below the ground"),
+    ],
+)
+def test_a_message_says_a_number_that_helps(descent, message):
+    with pytest.raises(NoSoftLanding, match=message):
+        best_ignition(descent)
+
+
+@pytest.mark.parametrize(
+    ("value", "said"),
+    [(0.0, "0"), (4e-4, "0.0004"), (0.123456, "0.123"), (12.345, "12.3"), (999.7, "1,000"), (123456.7, "123,457")],
+)
+def test_digits_of_a_number_in_a_message(value, said):
+    assert digits(value) == said
 
 
 @pytest.mark.parametrize("missing", [1e-3, 100.0, 50e3])
@@ -222,6 +254,21 @@ def test_a_booster_above_escape_speed_never_comes_down(descent):
         best_ignition(descent)
     assert caught.value.reason == "never comes down"
     assert caught.value.amount == pytest.approx(descent.velocity - escape, rel=1e-9)
+
+
+TOO_WEAK = Descent(
+    Booster(35e3, 37e3, 2.8, 36e3, 0.5, 0.2), Planet(1.5e20, 1e5, 0.0, 300.0), height=50e3, velocity=-10.0
+)
+
+
+def test_a_jump_of_the_hover_height_is_no_root():
+    # gravity doubles on the way down: thrust holds the booster high up, and not further below
+    with pytest.raises(NoSoftLanding, match=r"too weak.*lit up to 30.3641 s, .* m above it or higher") as caught:
+        best_ignition(TOO_WEAK)
+    assert caught.value.reason == "too weak"
+    assert caught.value.amount > 10e3
+    assert referee.hover(TOO_WEAK, 30.3641)[1] > 15e3
+    assert referee.hover(TOO_WEAK, 30.3642)[1] < -10e3
 
 
 def test_no_soft_landing_survives_copy_and_pickle():
@@ -415,6 +462,15 @@ def test_shared_fall_leads_to_the_same_flights(descent, method):
         assert flown.t[-1] == pytest.approx(anew.t[-1], abs=1e-9)
         again = hover_height(descent, t, dt=dt, method=method)
         np.testing.assert_allclose(fall.hover_height(t), again, rtol=1e-12, atol=1e-7)
+
+
+@pytest.mark.parametrize("t_ignite", [60.211, 60.2110345])
+def test_shared_fall_ends_as_softly(t_ignite):
+    flown, anew = FreeFall(PAPER).fly(t_ignite), fly(PAPER, t_ignite)
+    assert flown.outcome == anew.outcome == "soft landing"
+    assert flown.hover == pytest.approx(anew.hover, rel=1e-12, abs=1e-9)
+    assert flown.touchdown == pytest.approx(anew.touchdown, rel=1e-6)
+    assert len(flown.t) == len(anew.t)
 
 
 def test_shared_fall_takes_a_controller_and_refuses_what_fly_refuses():

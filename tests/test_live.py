@@ -3,8 +3,10 @@
 import gc
 import io
 import itertools
+import math
 import os
 import sys
+from dataclasses import replace
 
 import matplotlib.pyplot as plt
 import nbformat
@@ -12,8 +14,9 @@ import numpy as np
 import pytest
 from ipywidgets import Checkbox, Dropdown, FloatLogSlider, FloatSlider, IntSlider, SelectionSlider, SelectMultiple
 from PIL import Image
+from scipy.optimize import brentq
 
-from hoverslam_lib import Descent, FreeFall, course, live
+from hoverslam_lib import FALCON_9, Descent, FreeFall, course, fly, live
 from hoverslam_lib.live import Live, verdict
 
 POSITIONS = int(os.environ.get("LIVE_POSITIONS", "100"))
@@ -150,13 +153,36 @@ def test_verdict_leads_with_the_hover_height():
     def said(t):
         return verdict(fall.fly(t), fall.hover_height(t))
 
-    assert said(60.2) == "stopped 12.7 m too high"
-    assert said(60.21103).startswith("soft landing with ")
+    assert said(60.2) == "stopped 12.7 m too high, and with the engine cut there, a crash with 15.8 m/s"
+    assert said(60.211) == "soft landing with 0.90 m/s, engine cut at hover height +0.041 m"
+    assert said(60.21104).startswith("soft landing with 1.")
+    assert "cut" not in said(60.21104)
     assert "hover height +0.00" in said(60.211035)
     assert said(60.3).startswith("hover height −102 m, 188.4 m/s too fast")
     assert said(20.0) == "stopped 91.52 km too high"
     assert "too fast at the ground" in said(99.0)
     assert "nan" not in said(99.0)
+
+
+def test_verdict_says_numbers_that_help():
+    fall = FreeFall(Descent(), dt=0.1)
+    t = brentq(lambda t: fall.hover_height(t) - 999.7, 59.0, 60.2)
+    assert verdict(fall.fly(t), 999.7) == "stopped 1.00 km too high"
+    t = brentq(lambda t: fall.fly(t).touchdown[1] + 2.004, 60.21104, 60.2112)
+    assert verdict(fall.fly(t), fall.hover_height(t)).endswith("m, 0.004 m/s too fast at the ground")
+    short = replace(FALCON_9, propellant_mass=2.0)
+    for velocity, said in ((-1.0, "-0.6"), (-0.37, "0.0"), (-30.0, "-30")):
+        empty = fly(Descent(short, height=0.5, velocity=velocity), 0.0)
+        assert verdict(empty, 0.5).startswith("tank empty 0.")
+        assert verdict(empty, 0.5).endswith(f"m above the ground, at {said} m/s")
+
+
+def test_verdict_says_how_a_flight_ended_softly():
+    low = Descent(height=0.1, velocity=0.0)
+    assert verdict(fly(low, None), math.nan) == "soft landing with 1.40 m/s"
+    short = replace(FALCON_9, propellant_mass=2.0)
+    empty = fly(Descent(short, height=0.05, velocity=-1.0), 0.0)
+    assert verdict(empty, 0.0481) == "soft landing with 1.17 m/s, tank empty, hover height +0.048 m"
 
 
 # ---- every control of every notebook ------------------------------------------------------------------------------

@@ -2,11 +2,13 @@
 
 import math
 import re
+from itertools import islice
 
 import numpy as np
 import pytest
 
 from hoverslam_lib import METHODS, integrate
+from hoverslam_lib.trajectory import time_grid
 
 
 def falling(t, h, v):
@@ -174,3 +176,32 @@ def test_the_dt_that_is_advised_instead_is_one_that_is_allowed(dt, t_end):
         integrate(must_not_be_called, 0.0, 0.0, dt=dt, t_end=t_end)
     advised = float(re.search(r"at least (\S+) s$", str(caught.value)).group(1))
     assert 5_000_000 <= t_end / advised <= 10_000_000
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize(("t0", "dt", "steps"), [(1000.0, 1e-5, 3), (1e6, 1e-7, 5), (1e9, 1e-5, 7), (-1000.0, 1e-5, 3)])
+def test_no_step_is_without_length_where_time_is_late(t0, dt, steps, method):
+    # the last digit of t0 is more than a billionth of a step
+    run = integrate(lambda t, h, v: -h, 1.0, 0.0, dt=dt, t0=t0, t_end=t0 + steps * dt, method=method)
+    assert np.all(np.diff(run.t) > 0)
+    assert len(run.t) == steps + 1
+    assert run.t[-1] == t0 + steps * dt
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_step_that_is_lost_in_the_last_digit_of_time_is_left_out(method):
+    run = integrate(lambda t, h, v: -h, 1.0, 0.0, dt=1e-14, t0=1000.0, t_end=1000.0 + 1e-12, method=method)
+    assert np.all(np.diff(run.t) > 0)
+    assert run.t[-1] == 1000.0 + 1e-12
+
+
+@pytest.mark.parametrize(("t0", "t_end"), [(0.0, 0.7), (60.0, 61.3), (-2.0, 0.0), (1e8, 1e8 + 1.0), (3.0, math.inf)])
+def test_a_grid_is_strictly_increasing_and_ends_on_its_end(t0, t_end):
+    grid = list(islice(time_grid(t0, t_end, 0.1), 20))
+    assert np.all(np.diff([t0, *grid]) > 0)
+    assert len(grid) == (20 if t_end == math.inf else math.ceil((t_end - t0) / 0.1 - 1e-6))
+    assert t_end == math.inf or grid[-1] == t_end
+
+
+def test_there_is_no_grid_where_there_is_no_time():
+    assert list(time_grid(5.0, 5.0, 0.1)) == list(time_grid(5.0, 4.0, 0.1)) == []

@@ -7,7 +7,17 @@ import numpy as np
 
 from hoverslam_lib.checks.answers import compare, number, pair, repeatable, takes
 from hoverslam_lib.checks.feedback import Wrong, exercise
-from hoverslam_lib.descent import HOVER_HEIGHT, LANDING_BURN, SOFT_SPEED, advance
+from hoverslam_lib.descent import (
+    CRASH,
+    LANDING_BURN,
+    OUT_OF_PROPELLANT,
+    OUTCOMES,
+    SOFT_LANDING,
+    SOFT_SPEED,
+    STOPPED_TOO_HIGH,
+    advance,
+    speed_after_fall,
+)
 from hoverslam_lib.ignition import best_ignition
 from hoverslam_lib.integrators import rk4
 
@@ -104,7 +114,6 @@ LOOK = 0.1
 SIGMA = (0.01, 0.10, 0.05, 100.0, 20.0, 2.0, 0.05)
 NOISE = (0.1, 0.05)
 """Of a measured height [m] and velocity [m/s]."""
-KINDS = ("soft landing", "crash", "stopped too high", "out of propellant")
 
 
 @cache
@@ -181,10 +190,10 @@ def _flown(law, which):
         for j in np.flatnonzero((h_new <= 0) | (v_new >= 0) | (mass_new <= booster.dry_mass)):
             f = descents[alive[j]].acceleration(throttle=float(u[j]), mass=float(mass[j]))
             _, end_h, end_v, event = advance(rk4, f, 0.0, float(h[j]), float(v[j]), LOOK)
-            if event == "ground" or (event == "turn" and end_h <= HOVER_HEIGHT):
-                ends[alive[j]] = "soft landing" if abs(end_v) <= SOFT_SPEED else "crash"
+            if speed_after_fall(PLAN.planet, end_h, end_v) <= SOFT_SPEED:
+                ends[alive[j]] = SOFT_LANDING
             else:
-                ends[alive[j]] = "out of propellant" if event is None else "stopped too high"
+                ends[alive[j]] = {"ground": CRASH, "turn": STOPPED_TOO_HIGH, None: OUT_OF_PROPELLANT}[event]
         going = ends[alive] == ""
         t, h, v, mass = (column[going] for column in (t + LOOK, h_new, v_new, mass_new))
         guess = (guess - u * booster.burn_rate * LOOK)[going]
@@ -201,10 +210,10 @@ def _lesson_law(h, v, mass):
 
 def _enough(ends, asked, what, commands, lesson):
     """Raise `Wrong` unless so many landings are soft; else nothing."""
-    count = {kind: int(np.sum(ends == kind)) for kind in KINDS}
-    if count["soft landing"] >= asked:
+    count = {kind: int(np.sum(ends == kind)) for kind in OUTCOMES}
+    if count[SOFT_LANDING] >= asked:
         return
-    others = ", ".join(f"{n} × {kind}" for kind, n in count.items() if n and kind != "soft landing")
+    others = ", ".join(f"{n} × {kind}" for kind, n in count.items() if n and kind != SOFT_LANDING)
     score = f"{what}, {count['soft landing']} of {len(ends)} land softly, {asked} are asked for; {others}."
     if len(ends) == 1:
         score = f"{what}, it ends like this: {ends[0]}."
@@ -243,7 +252,7 @@ def throttle_project(law):
     for which, asked, what in (
         (slice(0, 1), 1, "As planned, without errors"),
         (slice(1, 31), 27, "With errors, and perfect eyes"),
-        (slice(31, 91), 54, "With errors, and noise in what it sees"),
+        (slice(31, 91), 58, "With errors, and noise in what it sees"),
     ):
         ends, commands = _flown(law, which)
         _enough(ends, asked, what, commands, lesson)

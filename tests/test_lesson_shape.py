@@ -9,7 +9,7 @@ import pytest
 from hoverslam_lib import course
 
 LESSONS = [path for path in course.lessons() if re.match(r"\d", path.name)]
-NOT_YET = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}
+NOT_YET = {1, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}
 """Lessons that still wait to be put into this shape."""
 
 SHAPED = [path for path in LESSONS if int(path.name[:2]) not in NOT_YET]
@@ -89,14 +89,15 @@ def test_stated_times_are_the_same_everywhere(path):
 @each_lesson
 def test_every_letter_of_its_tables_is_in_the_glossary(path):
     glossary = (course.NOTEBOOKS / "glossary.md").read_text(encoding="utf-8")
-    symbols = glossary.split("## Symbols")[1].split("## Words")[0]
-    known = set(re.findall(r"\$([^$]+)\$", "\n".join(row.split("|")[1] for row in rows(symbols))))
+    known = letters(glossary.split("## Symbols")[1].split("## Words")[0])
     used = set()
     for cell in cells(path, "markdown"):
         for table in re.findall(r"^\| symbol \|.*\n(?:\|.*\n?)+", cell.source, re.MULTILINE):
-            used |= set(re.findall(r"\$([^$]+)\$", "\n".join(row.split("|")[1] for row in rows(table))))
+            used |= letters(table)
     assert used - known == set()
 
 
-def rows(text):
-    return [line for line in text.splitlines() if line.startswith("|")]
+def letters(table):
+    """What stands between dollars in the first column, of `v = …` the v."""
+    first = "\n".join(line.split("|")[1] for line in table.splitlines() if line.startswith("|"))
+    return {symbol.split("=")[0].strip() for symbol in re.findall(r"\$([^$]+)\$", first)}

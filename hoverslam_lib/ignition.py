@@ -280,7 +280,8 @@ def _first_dt_of_burn(descent, h, v):
     air = descent.planet.scale_height / -v if descent.planet.surface_density else math.inf
     drag = descent.drag(h, v)  # alone it would stop the booster within some m·v/drag
     damping = -descent.booster.initial_mass * v / drag if drag else math.inf
-    return min(-v / braking / 4, air, damping)
+    orbit = math.sqrt((descent.planet.radius + h) / descent.planet.gravity(h))  # a radian of it: gravity changes
+    return min(-v / braking / 4, air, damping, orbit / 4)
 
 
 def _solve(descent, step, fraction, near=None):

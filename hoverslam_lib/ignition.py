@@ -280,7 +280,8 @@ def _first_dt_of_burn(descent, h, v):
     air = descent.planet.scale_height / -v if descent.planet.surface_density else math.inf
     drag = descent.drag(h, v)  # alone it would stop the booster within some m·v/drag
     damping = -descent.booster.initial_mass * v / drag if drag else math.inf
-    return min(-v / braking / 4, air, damping)
+    orbit = math.sqrt((descent.planet.radius + h) / descent.planet.gravity(h))  # a radian of it: gravity changes
+    return min(-v / braking / 4, air, damping, orbit / 4)
 
 
 def _solve(descent, step, fraction, near=None):
@@ -315,7 +316,9 @@ def _solve(descent, step, fraction, near=None):
     if near is not None and abs(missed_by(t_ignite)) > NEAR_ZERO * descent.height:  # steep, or no root but a jump
         t_ignite = bracketed_root(missed_by, *bracket)
         if abs(missed_by(t_ignite)) > NEAR_ZERO * descent.height:
-            raise _too_weak(t_ignite, missed_by(max(t_ignite - 4 * math.ulp(t_ignite), 0.0)))
+            # next to the jump rounding decides on which side a burn ends
+            before = (missed_by(max(t_ignite - s * t_end, 0.0)) for s in (1e-12, 1e-9, 1e-6))
+            raise _too_weak(t_ignite, next((height for height in before if height > 0), bracket[2]))
     h, v, t_touchdown, _ = lit(t_ignite)
     left = descent.booster.propellant_mass - descent.booster.burn_rate * (t_touchdown - t_ignite)
     return Ignition(t_ignite, h, v, t_touchdown, left)

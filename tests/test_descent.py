@@ -377,6 +377,15 @@ def test_time_goes_on_however_near_ignition_is_to_an_apex(method, digits):
     assert (flight.hover is None) == math.isinf(hover_height(ASCENDING, t_ignite, dt=0.3, method=method))
 
 
+def test_time_goes_on_in_a_fall_whose_step_ends_a_hair_before_the_apex():
+    def nearly(f, t, h, v, dt):
+        return (h + v * dt, 1e-30) if v == 4 else even(f, t, h, v, dt)
+
+    flight = fly(Descent(height=1.0, velocity=4.0), None, dt=0.5, method=nearly)
+    assert flight.v[1] == 0
+    assert np.all(np.diff(flight.t) > 0)
+
+
 def test_a_soft_landing_without_an_engine():
     flight = fly(Descent(height=0.2, velocity=0.0), None)
     assert flight.outcome == SOFT_LANDING

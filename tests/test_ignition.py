@@ -271,6 +271,19 @@ def test_a_jump_of_the_hover_height_is_no_root():
     assert referee.hover(TOO_WEAK, 30.3642)[1] < -10e3
 
 
+def test_a_burn_that_lasts_for_hours_is_not_stepped_over():
+    # it brakes by a millimetre a second each second, while the planet passes from far to near
+    descent = Descent(
+        Booster(2688.0, 5021.5, 0.06079, 933.776, 0.5, 1.0), Planet(2.783e21, 770e3, 0.0, 8e3), 468.7e3, -3.243
+    )
+    assert referee.hover(descent, 5.0)[1] > 400e3
+    assert referee.hover(descent, 30.0)[1] == -math.inf
+    with pytest.raises(NoSoftLanding) as caught:
+        best_ignition(descent)
+    assert caught.value.reason == "too weak"
+    assert 1e3 < caught.value.amount < 400e3
+
+
 def test_no_soft_landing_survives_copy_and_pickle():
     error = NoSoftLanding("tank", 12.5, "the tank is too small")
     for twin in (copy.copy(error), pickle.loads(pickle.dumps(error))):

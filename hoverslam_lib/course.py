@@ -220,7 +220,7 @@ def copy(folder, lesson=None, for_teaching=False):
 def _copying(folder, lesson, for_teaching):
     """What `copy` writes, as soon as it is written."""
     sources = _sources(for_teaching)
-    again = lesson and _picked(lesson, [path for path in sources if path.suffix == ".ipynb"])
+    again = None if lesson is None else _picked(lesson, [path for path in sources if path.suffix == ".ipynb"])
     _check_place(folder, sources)
     folder.mkdir(parents=True, exist_ok=True)
     if not os.path.lexists(folder / ".gitignore"):

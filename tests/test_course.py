@@ -43,7 +43,7 @@ def folder(tmp_path, monkeypatch):
     return notebooks
 
 
-def test_refresh_executes_cleans_and_changes_nothing_the_second_time(folder):
+def test_refresh_executes_cleans_and_changes_nothing_the_second_time(folder, capfd):
     path = folder / "01_first.ipynb"
     assert course.problems(path) != []
     assert course.refresh(path) == []
@@ -56,6 +56,7 @@ def test_refresh_executes_cleans_and_changes_nothing_the_second_time(folder):
     assert 'alt="a line to 1"' in stored.cells[2].outputs[0].data["text/html"]
     assert course.refresh(path) == []
     assert path.read_bytes() == once
+    assert capfd.readouterr() == ("", ""), "neither the kernel nor who starts it has anything to say"
 
 
 def test_refresh_of_a_lesson_that_raises_says_so_and_leaves_the_file(folder, capsys):
@@ -173,30 +174,30 @@ def test_copy_is_the_same_from_every_folder(folder, tmp_path, monkeypatch, start
 
 
 REFUSED = {
-    "into the lessons": ("", "notebooks"),
-    "beside a lesson": ("", "notebooks/mine"),
-    "deep in the lessons": ("", "notebooks/images/mine/yours"),
-    "from inside the lessons": ("notebooks", "my_course"),
-    "here, in the lessons": ("notebooks", "."),
-    "by a link to the lessons": ("", "link/mine"),
-    "into the course": ("", "."),
-    "into the course from below": ("notebooks", ".."),
-    "above the course": ("notebooks", "../.."),
-    "among the tests": ("", "tests/mine"),
-    "onto a file": ("", "file.txt"),
-    "onto a lesson": ("", "notebooks/01_first.ipynb"),
-    "below a file": ("", "file.txt/mine"),
-    "between files of another kind": ("", "other"),
-    "into another's checkout": ("", "checkout"),
-    "onto a link to itself": ("", "loop"),
-    "no name": ("", ""),
+    "into the lessons": ("", "notebooks", "own folder"),
+    "beside a lesson": ("", "notebooks/mine", "own folder"),
+    "deep in the lessons": ("", "notebooks/images/mine/yours", "own folder"),
+    "from inside the lessons": ("notebooks", "my_course", "own folder"),
+    "here, in the lessons": ("notebooks", ".", "own folder"),
+    "by a link to the lessons": ("", "link/mine", "own folder"),
+    "among the tests": ("", "tests/mine", "own folder"),
+    "into the course": ("", ".", "holds the course"),
+    "into the course from below": ("notebooks", "..", "holds the course"),
+    "above the course": ("notebooks", "../..", "holds the course"),
+    "no name": ("", "", "holds the course"),
+    "onto a file": ("", "file.txt", "is a file"),
+    "onto a lesson": ("", "notebooks/01_first.ipynb", "is a file"),
+    "below a file": ("", "file.txt/mine", "cannot use"),
+    "onto a link to itself": ("", "loop", "cannot use"),
+    "between files of another kind": ("", "other", "no copy"),
+    "into another's checkout": ("", "checkout", "no copy"),
 }
 
 
 @pytest.mark.parametrize("case", REFUSED)
 @pytest.mark.parametrize("options", [[], ["--for-teaching"], ["--lesson", "1"]])
 def test_copy_where_it_would_do_harm_is_refused_with_a_sentence(folder, tmp_path, monkeypatch, capsys, case, options):
-    start, where = REFUSED[case]
+    start, where, why = REFUSED[case]
     for name in ("tests", "other", "checkout"):
         (tmp_path / name).mkdir()
     (tmp_path / "file.txt").write_text("mine")
@@ -213,7 +214,7 @@ def test_copy_where_it_would_do_harm_is_refused_with_a_sentence(folder, tmp_path
     assert course.main(["copy", where, *options]) == 2
     said = capsys.readouterr()
     assert said.out == ""
-    assert re.fullmatch(r"\S.* (name|choose) .*\n", said.err)
+    assert re.fullmatch(rf".*{why}.* (name|choose) .*\n", said.err)
     assert tree(tmp_path) == before
     assert sorted(tmp_path.rglob("*")) == places
 
@@ -245,6 +246,7 @@ def test_lesson_that_a_full_disk_cut_short_is_not_taken_for_the_student_s(folder
         full.setattr(Path, "write_bytes", cut_short)
         assert course.main(["copy", str(mine)]) == 2
     assert "No space left" in capsys.readouterr().err
+    assert tree(mine).keys() == {".gitignore"}
     assert course.main(["copy", str(mine)]) == 0
     nbformat.read(mine / "01_first.ipynb", as_version=4)
     assert tree(mine).keys() == STUDENTS

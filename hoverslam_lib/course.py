@@ -1,14 +1,15 @@
 """The life of a notebook.
 
 ``python -m hoverslam_lib.course refresh [LESSON…]`` executes lessons from top to bottom in a fresh kernel, cleans and
-checks what they store. ``python -m hoverslam_lib.course copy FOLDER`` makes a student's working copy that git leaves
-alone; with ``--lesson 03`` a fresh copy of that lesson beside the edited one. ``python -m hoverslam_lib.course print
-FOLDER [LESSON…]`` writes pages to print or to read without a network.
+checks what they store. ``python -m hoverslam_lib.course copy FOLDER`` makes a student's working copy, without outputs,
+that git leaves alone, or goes on with the one that is there; with ``--lesson 3`` it puts a fresh lesson beside the
+edited one, with ``--for-teaching`` it keeps the outputs and adds what instructors need. ``python -m
+hoverslam_lib.course print FOLDER [LESSON…]`` writes pages to print or to read without a network.
 """
 
 import argparse
+import os
 import re
-import shutil
 import statistics
 import sys
 import time
@@ -18,34 +19,36 @@ from pathlib import Path
 NOTEBOOKS = Path(__file__).resolve().parent.parent / "notebooks"
 LONGEST_CELL = 15
 LARGEST_FILE = 700_000
-NOT_FOR_STUDENTS = (
-    "solutions",
-    "erratum",
-    ".hoverslam_progress.json",
-    "instructor_guide.md",
-    "__pycache__",
-    ".ipynb_checkpoints",
-)
+FOR_INSTRUCTORS = ("instructor_guide.md", "mission_control.ipynb")
 
 
 def lessons(names=()):
-    """Paths of the notebooks, in order; `names` picks some by number or by the beginning of the name.
+    """Paths of the notebooks, in order; `names` picks some: a number is that lesson, part of a name that notebook.
 
     Raises
     ------
     ValueError
-        If a name fits no notebook, or the checkout is missing.
+        If a name fits no notebook or several, or the checkout is missing.
     """
     paths = sorted(NOTEBOOKS.glob("*.ipynb"))
     if not paths:
         raise ValueError(f"there are no notebooks in {NOTEBOOKS}: run this from a checkout of the course")
-    chosen = []
-    for name in names:
-        fitting = [path for path in paths if path.name.startswith(Path(name).name)]
-        if not fitting:
-            raise ValueError(f"no lesson begins with {name!r}; there are {', '.join(path.stem for path in paths)}")
-        chosen += fitting
-    return chosen or paths
+    return [_picked(name, paths) for name in names] or paths
+
+
+def _picked(name, paths):
+    """The one path that a number, a name, part of a name or a path of a notebook means."""
+    wanted = Path(name).name.removesuffix(".ipynb").lower()
+    if Path(name).parent.name not in ("", NOTEBOOKS.name):  # of another folder
+        fitting = []
+    elif re.fullmatch("[0-9]+", wanted):
+        fitting = [path for path in paths if re.match(f"0*{int(wanted)}_", path.name)]
+    else:
+        fitting = [path for path in paths if path.stem == wanted] or [path for path in paths if wanted in path.stem]
+    if len(fitting) == 1:
+        return fitting[0]
+    listed = ", ".join(path.stem for path in fitting or paths)
+    raise ValueError(f"{name!r} means {'more than one of' if fitting else 'no lesson; there are'} {listed}")
 
 
 def refresh(path):
@@ -58,11 +61,9 @@ def refresh(path):
     """
     import nbformat
     from nbclient import NotebookClient
+    from traitlets.config import Config
 
-    notebook = nbformat.read(path, as_version=4)
-    for cell in notebook.cells:
-        if cell.cell_type == "code":
-            cell.outputs, cell.execution_count = [], None
+    notebook = _without_outputs(path)
     NotebookClient(
         notebook,
         kernel_name="python3",
@@ -70,12 +71,24 @@ def refresh(path):
         record_timing=False,
         coalesce_streams=True,
         resources={"metadata": {"path": str(path.parent)}},
+        config=Config(KernelManager={"transport_encryption": "auto"}),  # else ipykernel warns that there is none
     ).execute()
     _clean(notebook)
     text = nbformat.writes(notebook) + "\n"
     if text != path.read_text(encoding="utf-8"):
         path.write_text(text, encoding="utf-8")
     return problems(path)
+
+
+def _without_outputs(path):
+    """A notebook as it is before anything is run."""
+    import nbformat
+
+    notebook = nbformat.read(path, as_version=4)
+    for cell in notebook.cells:
+        if cell.cell_type == "code":
+            cell.outputs, cell.execution_count = [], None
+    return notebook
 
 
 def _clean(notebook):
@@ -177,47 +190,97 @@ def _numbers(version):
     return tuple(int(number) for number in re.findall(r"\d+", version))
 
 
-def copy(folder, lesson=None):
-    """Make a working copy of the notebooks in `folder`; nothing that is there is overwritten.
+def copy(folder, lesson=None, for_teaching=False):
+    """Make a working copy of the notebooks, or complete the one that is there; nothing that is there is overwritten.
 
     Parameters
     ----------
     folder : path
         Made if need be. A ``.gitignore`` in it keeps git away.
     lesson : str, optional
-        Copy only this lesson, under a new name if there is an edited one already.
+        Number or name: put a fresh copy of this lesson, under a new name, beside the one that is there.
+    for_teaching : bool, optional
+        Keep the outputs, which hold the answers to the predictions, and add the instructor's guide and mission control.
 
     Returns
     -------
     list of Path
         What was written.
+
+    Raises
+    ------
+    ValueError
+        If the folder is no place for a copy, or `lesson` means none or several.
+    OSError
+        If the file system refuses.
     """
-    folder = Path(folder)
+    return list(_copying(Path(folder), lesson, for_teaching))
+
+
+def _copying(folder, lesson, for_teaching):
+    """What `copy` writes, as soon as it is written."""
+    sources = _sources(for_teaching)
+    again = None if lesson is None else _picked(lesson, [path for path in sources if path.suffix == ".ipynb"])
+    _check_place(folder, sources)
     folder.mkdir(parents=True, exist_ok=True)
-    ignore = folder / ".gitignore"
-    if not ignore.exists():
-        ignore.write_text("*\n", encoding="utf-8")
-    if lesson is not None:
-        return [_copy_beside(path, folder) for path in lessons([lesson])]
-    written = []
-    for source in sorted(NOTEBOOKS.iterdir()):
-        target = folder / source.name
-        if source.name in NOT_FOR_STUDENTS or target.exists():
-            continue
-        if source.is_dir():
-            shutil.copytree(source, target)
-        else:
-            shutil.copy(source, target)
-        written.append(target)
-    return written
+    if not os.path.lexists(folder / ".gitignore"):
+        (folder / ".gitignore").write_text("*\n", encoding="utf-8")
+    for source in sources:
+        target, n = folder / source.relative_to(NOTEBOOKS), 1
+        while source == again and os.path.lexists(target):
+            n += 1
+            target = folder / f"{source.stem}_fresh_{n}.ipynb"
+        if not os.path.lexists(target):
+            yield _write(target, _content(source, for_teaching))
 
 
-def _copy_beside(source, folder):
-    target, n = folder / source.name, 1
-    while target.exists():
-        n += 1
-        target = folder / f"{source.stem}_fresh_{n}.ipynb"
-    return Path(shutil.copy(source, target))
+def _sources(for_teaching):
+    """What belongs into a copy: only what is named here, so nothing that somebody left between the lessons."""
+    found = [path for path in lessons() if re.fullmatch(r"\d\d_\w+", path.stem)]
+    found += [NOTEBOOKS / name for name in ("glossary.md", *(FOR_INSTRUCTORS if for_teaching else ()))]
+    found += [path for path in sorted((NOTEBOOKS / "images").glob("*.*")) if not path.name.startswith(".")]
+    return [path for path in found if path.is_file()]
+
+
+def _check_place(folder, sources):
+    """Refuse a folder in which a copy would do harm."""
+    place = Path(os.path.realpath(folder))
+    if place.exists() and not place.is_dir():
+        raise ValueError(f"{folder} is a file: name a folder")
+    project = NOTEBOOKS.parent
+    if any(_same(place, parent) for parent in (project, *project.parents)):
+        raise ValueError(f"{folder} holds the course itself: name a new folder, such as {folder / 'my_course'}")
+    for own in (NOTEBOOKS, *(project / name for name in ("hoverslam_lib", "data", "tests"))):
+        if any(_same(parent, own) for parent in (place, *place.parents)):
+            raise ValueError(f"{folder} is in the course's own folder {own}: name one outside of it")
+    names = set(os.listdir(place)) if place.exists() else set()
+    ignored = ".gitignore" in names and (place / ".gitignore").read_text(encoding="utf-8").strip() == "*"
+    if names and not ignored and names.isdisjoint(path.name for path in sources if path.suffix == ".ipynb"):
+        raise ValueError(f"{folder} holds other files and no copy: name a new folder, such as {folder / 'my_course'}")
+
+
+def _same(one, other):
+    """Whether two paths are one folder, also where the file system knows it under several names."""
+    return one.exists() and other.exists() and one.samefile(other)
+
+
+def _content(source, for_teaching):
+    if for_teaching or source.suffix != ".ipynb":
+        return source.read_bytes()
+    import nbformat
+
+    return (nbformat.writes(_without_outputs(source)) + "\n").encode()
+
+
+def _write(target, content):
+    """Write a file whole or not at all: what a full disk cut short would be taken for the student's own later."""
+    target.parent.mkdir(exist_ok=True)
+    part = target.with_name(f".{target.name}.part")
+    try:
+        part.write_bytes(content)
+        return part.rename(target)
+    finally:
+        part.unlink(missing_ok=True)
 
 
 def page(path):
@@ -259,9 +322,10 @@ def main(arguments=None):
     commands = parser.add_subparsers(dest="command", required=True)
     refreshing = commands.add_parser("refresh", help="execute lessons, clean and check what they store")
     refreshing.add_argument("lesson", nargs="*", help="number or name; all lessons if left out")
-    copying = commands.add_parser("copy", help="make a working copy that git leaves alone")
+    copying = commands.add_parser("copy", help="make a working copy that git leaves alone, or go on with the one there")
     copying.add_argument("folder")
     copying.add_argument("--lesson", help="number or name: a fresh copy of this lesson beside the edited one")
+    copying.add_argument("--for-teaching", action="store_true", help="with outputs, guide and mission control")
     printing = commands.add_parser("print", help="write lessons as pages to print or to read without a network")
     printing.add_argument("folder")
     printing.add_argument("lesson", nargs="*", help="number or name; all lessons if left out")
@@ -272,7 +336,10 @@ def main(arguments=None):
         return _copy_all(options) if options.command == "copy" else _print_all(options)
     except ValueError as error:
         print(error, file=sys.stderr)
-        return 2
+    except OSError as error:
+        place = f" {error.filename}" if error.filename else ""
+        print(f"cannot use{place}: {error.strerror}; choose a place where you may write", file=sys.stderr)
+    return 2
 
 
 def _refresh_all(names):
@@ -319,15 +386,15 @@ def _print_all(options):
 
 
 def _copy_all(options):
-    written = copy(options.folder, options.lesson)
-    for path in written:
-        print(f"wrote {path}")
-    if options.lesson is None:
-        kept = len([p for p in NOTEBOOKS.iterdir() if p.name not in NOT_FOR_STUDENTS]) - len(written)
-        if kept:
-            print(f"left {kept} as they were; for a fresh lesson beside yours add --lesson and its number")
+    written = 0
+    for path in _copying(Path(options.folder), options.lesson, options.for_teaching):
+        print(f"wrote {path}", flush=True)
+        written += 1
+    if not written:
+        print(f"{options.folder} is complete and left as it is; --lesson and a number put a fresh lesson beside yours")
     return 0
 
 
 if __name__ == "__main__":
+    sys.stdout.reconfigure(errors="backslashreplace")  # a name of a folder that the terminal cannot show is no error
     sys.exit(main())

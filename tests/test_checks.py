@@ -11,6 +11,7 @@ import shutil
 import subprocess
 import sys
 import textwrap
+import threading
 import time
 
 import nbformat
@@ -18,7 +19,7 @@ import numpy as np
 import pytest
 
 from hoverslam_lib import checks, course
-from hoverslam_lib.checks import feedback, pages, record
+from hoverslam_lib.checks import feedback, judging, pages, record, stopping
 from hoverslam_lib.checks.judging import Cases, Value
 
 OPEN = "○ not attempted yet"
@@ -331,12 +332,153 @@ def test_answer_may_do_what_it_likes(behaviour, capsys):
     assert capsys.readouterr() == ("", "")
 
 
-@pytest.mark.parametrize("function", [never_ends, never_ends_and_catches])
+def catches_in_two_loops(x):
+    while True:
+        try:
+            while True:
+                try:
+                    x += 1
+                except BaseException:
+                    continue
+        except BaseException:
+            continue
+
+
+def sleeps_and_catches(x):
+    while True:
+        with contextlib.suppress(BaseException):
+            time.sleep(60)
+
+
+def computes_a_huge_power(x):
+    return 9**9**8
+
+
+ENDLESS = [never_ends, never_ends_and_catches, catches_in_two_loops, sleeps_and_catches, computes_a_huge_power]
+
+
+@pytest.mark.skipif(not hasattr(stopping.signal, "setitimer"), reason="no timer of signals")
+@pytest.mark.parametrize("function", ENDLESS)
 def test_answer_that_never_ends_is_stopped(function, monkeypatch):
+    _is_stopped(function, monkeypatch)
+
+
+@pytest.mark.parametrize("function", ENDLESS[:3])
+def test_answer_that_never_ends_is_stopped_without_a_timer_of_signals(function, monkeypatch):
+    monkeypatch.delattr(stopping.signal, "setitimer", raising=False)
+    _is_stopped(function, monkeypatch)
+
+
+def _is_stopped(function, monkeypatch):
     monkeypatch.setattr(feedback, "TIME_LIMIT", 0.3)
-    start = time.perf_counter()
+    before = [stopping.signal.getsignal(number) for number in (stopping.signal.SIGINT, stopping.signal.SIGTERM)]
+    threads, start = threading.active_count(), time.perf_counter()
     assert "was stopped after" in repr(doubled(function))
     assert time.perf_counter() - start < 3
+    time.sleep(3 * stopping.PAUSE)
+    assert sys.gettrace() is None
+    assert threading.active_count() == threads, "nothing goes on in the background"
+    assert before == [stopping.signal.getsignal(number) for number in (stopping.signal.SIGINT, stopping.signal.SIGTERM)]
+    assert doubled(lambda x: 2 * x).done
+
+
+@pytest.mark.skipif(not hasattr(stopping.signal, "setitimer"), reason="needs a signal from outside")
+def test_interrupt_stops_the_answer(tmp_path):
+    code = (
+        "import os, signal, threading, time\n"
+        "from hoverslam_lib import checks\n"
+        "def endless(omega, dt, n):\n"
+        "    while True: pass\n"
+        "threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()\n"
+        "try:\n    checks.energy_factor(endless)\n"
+        "except KeyboardInterrupt:\n"
+        "    start = time.process_time(); time.sleep(0.5)\n"
+        "    print('stopped', time.process_time() - start < 0.1, threading.active_count())\n"
+    )
+    made = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    assert made.stdout == "stopped True 1\n", made.stderr
+
+
+class Hostile:
+    """Raises whatever it is asked."""
+
+    def __getattr__(self, name):
+        raise RuntimeError("no attributes here")
+
+    def __repr__(self):
+        raise RuntimeError("nothing to show")
+
+    def __bool__(self):
+        raise RuntimeError("neither true nor false")
+
+    __eq__ = __len__ = __float__ = __array__ = __bool__
+
+
+class Unspeakable(Exception):
+    def __str__(self):
+        raise RuntimeError("no text")
+
+
+def raises_what_has_no_text(x):
+    raise Unspeakable
+
+
+def test_hostile_objects_leak_nothing(monkeypatch):
+    def raises_a_long_text(x):
+        raise ValueError("long\n" * 20_000)
+
+    for number, check in checks.EXERCISES.items():
+        answers = [Hostile() for _ in check.answers]
+        assert check(*answers).text.startswith("✘"), number
+    for answer in (Hostile(), lambda x: Hostile(), raises_what_has_no_text, raises_a_long_text):
+        said = doubled(answer).text
+        assert said.startswith("✘ 0 of 2 — ")
+        assert "\n" not in said
+        assert len(said) < 250
+    assert "Unspeakable in line" in doubled(raises_what_has_no_text).text
+
+
+def test_line_of_an_error_is_the_students_own():
+    def asks_numpy(x):
+        return np.linalg.inv(np.zeros((2, 2)))
+
+    own = asks_numpy.__code__.co_firstlineno + 1
+    assert f"in line {own} of its cell" in doubled(asks_numpy).text
+
+
+def test_call_that_does_not_fit_says_how():
+    for said in (checks.energy_factor(), checks.energy_factor(my_energy_factor=3), checks.mist(1.0)):
+        assert "Please call it as in the lesson: checks." in said.text
+
+
+def test_object_of_ones_own_counts_once():
+    class Doubler:
+        def __call__(self, x):
+            return 7.0
+
+    said = [doubled(Doubler()).text for _ in range(3)]
+    assert [("general" in text) for text in said] == [True] * 3
+
+
+def test_one_answer_of_several_is_judged_while_others_are_open():
+    said = checks.mist(0.5, ...)
+    assert said.text == "○ 1 of 2 — right so far; my_steps: not attempted yet"
+    assert not said.done
+    assert checks.mist(..., 6).mistake == "one step short"
+    assert checks.mist(100.0, ...).mistake == "slowest droplet"
+    assert checks.mist(..., ...).text == OPEN
+
+
+def test_mistake_that_never_ends_only_costs_its_time(tmp_path, monkeypatch):
+    monkeypatch.setattr(judging, "TIME_LIMIT", 0.3)
+    path = tmp_path / "lesson_02.md"
+    solution = "n = 0\n    while n < x:\n        n += 1\n    return 2 * n"
+    page = PAGE.replace("return 2 * x", solution).replace("`2 * -> 3 *`", "`n += 1 -> n += 0`")
+    path.write_text(page, encoding="utf-8")
+    (entry,) = pages.entries(path)
+    said = entry.exercise(None)(lambda x: 3 * x)
+    assert said.mistake is None
+    assert "Not right for 1: it gives 3. one" in said.text
 
 
 def test_printing_answer_passes_without_a_word(capsys):

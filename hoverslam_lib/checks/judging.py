@@ -1,6 +1,7 @@
 """How an answer is judged by the solution: both do the same cases, and so do the mistakes if the answer is wrong."""
 
 import inspect
+import re
 import time
 from dataclasses import dataclass
 
@@ -61,6 +62,12 @@ class Numbers:
     def _off(self, name, a, b):
         return distance(a, b, self.values[name].rtol, self.values[name].atol)
 
+    def _share(self, name, got, wrong):
+        """At most 1 if that is what the mistake leads to, as it comes or as people round it."""
+        figures = len(re.sub(r"e.*|\D", "", f"{got:.15g}").strip("0")) if got % 1 else len(f"{abs(got):.0f}")
+        share = self._off(name, got, wrong) / self.values[name].near
+        return min(share, 1.0) if figures > 1 and float(f"{wrong:.{figures}g}") == got else share
+
     def _judge(self, name, got):
         value, off = self.values[name], self._off(name, got[name], self.values[name].right)
         if off <= 1:
@@ -68,10 +75,7 @@ class Numbers:
         found = []
         for mistake, leads_to in self.mistakes:
             if name in leads_to and set(leads_to) <= set(got) and self._off(name, leads_to[name], value.right) > 1:
-                shares = [
-                    self._off(other, got[other], wrong) / self.values[other].near for other, wrong in leads_to.items()
-                ]
-                found.append((max(shares), mistake))
+                found.append((max(self._share(other, got[other], wrong) for other, wrong in leads_to.items()), mistake))
         share, mistake = min(found, key=lambda pair: pair[0], default=(np.inf, None))
         if share <= 1:
             raise Wrong(mistake=mistake, about=name)
@@ -125,7 +129,9 @@ class Cases:
             return len(found), None
         passed = max(len(found) - (wrong is None), 0)
         if wrong is None:
-            name, _ = guarded(lambda: self._mistake(answer, found), max(start + TIME_LIMIT - time.monotonic(), 0.1))
+            name, _ = guarded(
+                lambda: self._mistake(answer, passed, found[-1]), max(start + TIME_LIMIT - time.monotonic(), 0.1)
+            )
             _, wrong = (None, Wrong(mistake=name)) if name else guarded(lambda: self._say(found), TIME_LIMIT)
         return passed, wrong
 
@@ -143,9 +149,9 @@ class Cases:
             return isinstance(got, type(right))
         return distance(got, right, self.rtol, self.atol) <= 1
 
-    def _mistake(self, answer, found):
-        """The name of the mistake that does just the same in every case."""
-        first, near = len(found) - 1, []
+    def _mistake(self, answer, first, got):
+        """The name of the mistake that does just the same, from the `first` case on that is not right."""
+        found, near = {first: got}, []
         for mistake in self.mistakes:
             wrong = self._by(mistake, first)
             off = distance(found[first], wrong, self.rtol, self.atol)
@@ -157,11 +163,11 @@ class Cases:
         return None
 
     def _alike(self, answer, found, mistake, i):
-        while len(found) <= i:
-            found.append(self._outcome(answer, self.cases[len(found)]))
         wrong = self._by(mistake, i)
         if self._fits(wrong, self.right[i]):
-            return self._fits(found[i], self.right[i])
+            return True  # here it cannot be told from the right one
+        if i not in found:
+            found[i] = self._outcome(answer, self.cases[i])
         return distance(found[i], wrong, self.rtol, self.atol) <= self.near
 
     def _by(self, mistake, i):

@@ -135,7 +135,9 @@ def assigned(entry, mistake, space):
 def namespace(module=None):
     """The names that a solution and its cases may use: the library's, `np`, `math`, and the lesson's own module's."""
     public = {name: getattr(hoverslam_lib, name) for name in hoverslam_lib.__all__}
-    return public | {"np": np, "math": math} | (vars(module) if module else {})
+    return (
+        public | {"np": np, "math": math} | ({k: v for k, v in vars(module).items() if k[0] != "_"} if module else {})
+    )
 
 
 def run(entry, source, space, line):

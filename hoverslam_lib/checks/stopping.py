@@ -7,7 +7,6 @@ import io
 import signal
 import sys
 import threading
-import time
 
 PAUSE = 0.05
 """So often [s] is an answer thrown out again that catches what it is thrown out with."""
@@ -35,20 +34,33 @@ def limited(work, seconds):
         return work()
     timer = hasattr(signal, "setitimer")
     number = signal.SIGALRM if timer else signal.SIGTERM
-    before, tracing, over = signal.signal(number, _ring), sys.gettrace(), []
+    before, tracing, armed = signal.getsignal(number), sys.gettrace(), threading.Lock()
+
+    def ring(number, frame):
+        """Throw the answer out, and follow it line by line, should it catch that."""
+        if armed.locked():
+            while frame.f_code is not limited.__code__:
+                frame.f_trace = _follow
+                frame = frame.f_back
+            sys.settrace(_follow)
+            raise TimeIsUp
+
+    signal.signal(number, ring)
     try:
+        armed.acquire()
         if timer:
             signal.setitimer(signal.ITIMER_REAL, seconds, PAUSE)
         else:
-            threading.Thread(target=_call, args=(number, seconds, over), daemon=True).start()
+            threading.Thread(target=_call, args=(number, seconds, armed), daemon=True).start()
         try:
             return work()
         finally:
             while True:
                 try:  # nothing but C from here on, until nothing is thrown any more
+                    if armed.locked():
+                        armed.release()
                     if timer:
                         signal.setitimer(signal.ITIMER_REAL, 0)
-                    over.append(True)
                     sys.settrace(tracing)
                     _throw(threading.get_ident(), None)
                     break
@@ -58,20 +70,10 @@ def limited(work, seconds):
         signal.signal(number, before)
 
 
-def _call(number, seconds, over):
-    time.sleep(seconds)
-    while not over:
+def _call(number, seconds, armed):
+    while not armed.acquire(timeout=seconds):
         _thread.interrupt_main(number)
-        time.sleep(PAUSE)
-
-
-def _ring(number, frame):
-    """Throw the answer out, and follow it line by line, should it catch that."""
-    while frame is not None and frame.f_code is not limited.__code__:
-        frame.f_trace = _follow
-        frame = frame.f_back
-    sys.settrace(_follow)
-    raise TimeIsUp
+        seconds = PAUSE
 
 
 def _follow(frame, event, argument):

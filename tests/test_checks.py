@@ -52,8 +52,11 @@ def as_solved(number, row=None):
     entry, judge = checks.ENTRIES[number], checks.EXERCISES[number].judge
     space = pages.namespace(pages.own_module(entry.path))
     mistake = None if row is None else entry.mistakes[row]
-    if isinstance(judge, pages.Lazy) and isinstance(judge.made, Cases) and mistake:
-        return (judge.made.mistakes[row][1],)
+    if isinstance(judge, pages.Lazy) and mistake:
+        _, made = judge.made.mistakes[row][:2]
+        if isinstance(judge.made, Cases):
+            return (made,)
+        return tuple(made.get(name, value.right) for name, value in judge.made.values.items())
     if mistake is None or "->" in mistake.changes or mistake.name in entry.blocks:
         source = entry.changed(mistake) if mistake else entry.solution
         if isinstance(judge, pages.Lazy):
@@ -62,8 +65,6 @@ def as_solved(number, row=None):
         solved = pages.run(entry, source, space, entry.line)
     else:
         solved = pages.run(entry, entry.solution, space, entry.line)
-        if isinstance(judge, pages.Lazy):
-            solved |= {name: value.right for name, value in judge.made.values.items()}
         solved = solved | pages.assigned(entry, mistake, solved)
     return tuple(solved[name] for name in entry.answers)
 

@@ -190,6 +190,11 @@ check((1.0,), (3.0,), where="for {x:g}")
         ("| You triple. |", "|", r"line 21: a row should hold"),
         ("## 2.1 · a trial", "## a trial", r"line 3: a heading"),
         ("`checks.trial(my_trial)`", "", r"line 3: the call is missing"),
+        (
+            "| You triple. |",
+            "| You triple. |\n| tripled | `x -> 3 * x` | Other. |",
+            r"line 22: 'tripled' has another hint",
+        ),
         ("- one\n- two", "", r"line 3: hints of 2.1 are missing"),
         ("```python check", "```python", r"line 15: a second solution"),
         ("> Done.", "```python doubled twice\nx\n```", r"line 3: the block `python doubled twice`"),

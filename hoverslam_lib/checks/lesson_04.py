@@ -86,25 +86,9 @@ def _first_turn(seen, start, there, where, got):
 
 def on_the_droplet(step):
     """for f = 1000(cos t - v) at t = 0.5, h = 0.1, v = 0 with dt = 0.1"""
-    seen, t, h, v, dt = [], 0.5, 0.1, 0.0, 0.1
-
-    def f(t, h, v):
-        seen.append(v)
-        return 1000 * (math.cos(t) - v)
-
     try:
-        got = repeatable(step, f, t, h, v, dt)
-        if np.shape(got) != (2,) or np.max(np.abs(got)) < 1e6:
-            return got
-    except ArithmeticError as error:
-        got = error
-    for u in (v, v + dt * f(t, h, v)):
-        tries = [u]
-        for _ in range(3):
-            tries.append(v + dt / 2 * (f(t, h, v) + f(t + dt, h, tries[-1])))
-        del seen[-6:]
-        if all(np.isclose(other, seen, rtol=1e-9).any() for other in tries):
-            return "the same answer again and again, until it runs away"
-    if isinstance(got, ArithmeticError):
-        raise got
-    return got
+        got = repeatable(step, lambda t, h, v: 1000 * (math.cos(t) - v), 0.5, 0.1, 0.0, 0.1)
+    except ArithmeticError:
+        return "no end"
+    # the equation is linear: whoever follows a slope is there in one turn, and only putting in again runs away
+    return "no end" if np.shape(got) == (2,) and np.max(np.abs(got)) > 1e6 else got

@@ -227,7 +227,10 @@ def _complete(entry):
     for part, what in ((entry.hints, "hints"), (entry.solution, "the solution")):
         if not part:
             raise entry.error(entry.line, f"{what} of {entry.number} are missing")
-    names = [mistake.name for mistake in entry.mistakes]
+    names = {}
+    for mistake in entry.mistakes:
+        if names.setdefault(mistake.name, mistake.hint) != mistake.hint:
+            raise entry.error(mistake.line, f"{mistake.name!r} has another hint above: one name, one hint")
     for name in entry.blocks:
         if name not in names:
             raise entry.error(entry.line, f"the block `python {name}` of {entry.number} has no row in the table")

@@ -1,23 +1,32 @@
 """Feedback on exercises: ``checks.name(my_answer)`` under a stub answers in one line, and never raises.
 
-``checks.progress()`` says what is done, ``checks.show_solution("2.1")`` shows a solution if there is one.
+``checks.progress()`` says what is done, ``checks.show_solution("2.1")`` shows a solution if there is one. The exercises
+stand on pages of Markdown, one a lesson: ``lesson_02.md``.
 """
 
-import importlib
-import pkgutil
+from pathlib import Path
 
+from hoverslam_lib.checks import pages, record
 from hoverslam_lib.checks.feedback import Exercise
 from hoverslam_lib.checks.record import Page, done
-from hoverslam_lib.checks.record import solution as show_solution
 
-__all__ = ["EXERCISES", "progress", "show_solution"]
+__all__ = ["ENTRIES", "EXERCISES", "progress", "show_solution"]
 
+ENTRIES = {}  # the pages' text, by the number of the exercise
 EXERCISES = {}
-for _module in sorted(module.name for module in pkgutil.iter_modules(__path__) if module.name.startswith("lesson_")):
-    for _check in vars(importlib.import_module(f"{__name__}.{_module}")).values():
-        if isinstance(_check, Exercise):
-            EXERCISES[_check.number] = globals()[_check.__name__] = _check
-            __all__.append(_check.__name__)
+WITHHELD = ".solutions_withheld"
+"""A file of this name in a student's folder keeps solutions from being shown."""
+
+for _path in sorted({path.with_suffix(".md") for path in Path(__file__).parent.glob("lesson_*.*")}):
+    _module = pages.own_module(_path)
+    if _path.exists():
+        ENTRIES |= {entry.number: entry for entry in pages.entries(_path)}
+        _found = [entry.exercise(_module) for entry in ENTRIES.values() if entry.path == _path]
+    else:
+        _found = [check for check in vars(_module).values() if isinstance(check, Exercise)]
+    for _check in _found:
+        EXERCISES[_check.number] = globals()[_check.__name__] = _check
+        __all__.append(_check.__name__)
 
 
 def progress():
@@ -34,3 +43,28 @@ def progress():
         marks = "  ".join(f"{'✔' if number in finished else '○'} {number}" for number in numbers)
         lines.append(f"lesson {lesson:2}:  {marks}")
     return Page("\n".join(lines))
+
+
+def show_solution(number):
+    """Show the solution of an exercise, unless the instructor withholds them.
+
+    Parameters
+    ----------
+    number : str
+        Such as "2.1".
+
+    Returns
+    -------
+    Page
+    """
+    number = str(number)
+    if Path(WITHHELD).exists():
+        return Page(f"The solution to exercise {number} is withheld here: ask your instructor.")
+    if number in EXERCISES and number not in ENTRIES:
+        return Page(record.old_solution(number))
+    if number not in ENTRIES:
+        lesson = number.partition(".")[0]
+        there = [known for known in EXERCISES if known.startswith(f"{lesson}.")] or list(EXERCISES)
+        where = f"lesson {lesson} has" if there[0].startswith(f"{lesson}.") else "there are"
+        return Page(f"There is no exercise {number}; {where} {', '.join(there)}.")
+    return Page(ENTRIES[number].solution.strip())

@@ -1,8 +1,10 @@
 """Reading a student's answer, and comparing it."""
 
+import copy
+
 import numpy as np
 
-from hoverslam_lib.checks.feedback import Wrong
+from hoverslam_lib.checks.feedback import Wrong, text_of
 
 
 def number(value, name="the result"):
@@ -59,7 +61,7 @@ def compare(got, right, where, mistakes=None, *, rtol=1e-9, atol=1e-12):
     for mistake, (wrong, hint) in (mistakes or {}).items():
         if _same(got, wrong, rtol, atol) and not _same(wrong, right, rtol, atol):
             raise Wrong(hint, mistake)
-    raise Wrong(f"Not right {where}: it gives {_digits(got)}.", nudge=True)
+    raise Wrong(f"Not right {where}: it gives {digits(got)}.", nudge=True)
 
 
 def _same(a, b, rtol, atol):
@@ -69,17 +71,56 @@ def _same(a, b, rtol, atol):
     return a.shape == b.shape and np.allclose(a, b, rtol=rtol, atol=atol)
 
 
+def distance(a, b, rtol, atol):
+    """How far a is from b, in units of the tolerance: at most 1 is near enough, inf is nothing alike."""
+    if isinstance(a, Exception) or isinstance(b, Exception):
+        return 0.0 if type(a) is type(b) and text_of(a) == text_of(b) else np.inf
+    if _numeric(a) is None or _numeric(b) is None:
+        return 0.0 if type(a) is type(b) and a == b else np.inf
+    a, b = _numeric(a), _numeric(b)
+    if a.size == b.size == 1:
+        a, b = a.reshape(()), b.reshape(())
+    if a.shape != b.shape:
+        return np.inf
+    with np.errstate(all="ignore"):
+        off = np.where((a == b) | (np.isnan(a) & np.isnan(b)), 0.0, np.abs(a - b) / (atol + rtol * np.abs(b)))
+    return float(np.max(np.where(np.isnan(off), np.inf, off), initial=0.0))
+
+
+def _numeric(value):
+    """An array of floats, or None if it is anything else."""
+    if isinstance(value, str | bytes | dict | set | bool | np.bool_) or value is None:
+        return None
+    try:
+        made = np.asarray(value)
+        return None if made.dtype.kind in "USbc" else made.astype(float)
+    except (TypeError, ValueError):
+        return None
+
+
+def shaped_like(got, right, names):
+    """Raise `Wrong` unless the answer is of the kind of the right one: a number, a pair, an array of its shape."""
+    shape = np.shape(right)
+    if _numeric(right) is None:
+        return
+    if shape == ():
+        number(got)
+    elif isinstance(right, tuple) and shape == (2,):
+        pair(got, names)
+    else:
+        array(got, shape)
+
+
 def repeatable(function, *arguments):
     """Call a function twice with copies of the same arguments; return the first result.
 
     Raises `Wrong` if it changes its arguments, or gives another result the second time.
     """
-    copies = [a.copy() if isinstance(a, np.ndarray) else a for a in arguments]
+    copies = copy.deepcopy(arguments)
     first = function(*copies)
-    for before, after in zip(arguments, copies, strict=True):
-        if isinstance(before, np.ndarray) and not np.array_equal(before, after):
-            raise Wrong("Your function changes the arrays that it is given: work on a copy.", "changes its arguments")
-    again = function(*(a.copy() if isinstance(a, np.ndarray) else a for a in arguments))
+    if not all(map(_unchanged, arguments, copies)):
+        raise Wrong("Your function changes what it is given: work on a copy.", "changes its arguments")
+    again = function(*copy.deepcopy(arguments))
     try:
         same = np.array_equal(np.asarray(first, dtype=float), np.asarray(again, dtype=float), equal_nan=True)
     except (TypeError, ValueError):
@@ -87,6 +128,14 @@ def repeatable(function, *arguments):
     if not same:
         raise Wrong("Called twice with the same arguments, it gives two results.", "remembers its last call")
     return first
+
+
+def _unchanged(before, after):
+    if isinstance(before, np.ndarray):
+        return np.array_equal(before, after, equal_nan=before.dtype.kind == "f")
+    if hasattr(before, "__dataclass_fields__"):
+        return all(map(_unchanged, vars(before).values(), vars(after).values()))
+    return True
 
 
 def takes(function, *names):
@@ -122,11 +171,14 @@ def _start(name):
 
 
 def _shown(value):
-    text = " ".join(repr(value).split())
+    text = text_of(value, repr)
     return text if len(text) <= 40 else f"{text[:37]}…"
 
 
-def _digits(got):
+def digits(got):
+    """An answer as the student is shown it."""
+    if _numeric(got) is None and not isinstance(got, str):
+        return _shown(got)
     if isinstance(got, str):
         return repr(got)
     values = np.atleast_1d(np.asarray(got, dtype=float)).ravel()

@@ -1,22 +1,24 @@
 """What a check says, and how it runs a student's answer without ever raising."""
 
-import contextlib
-import ctypes
 import html
-import io
-import threading
+import inspect
+import re
 import traceback
+import types
 from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 
 from hoverslam_lib.checks import record
+from hoverslam_lib.checks.stopping import TimeIsUp, quietly
 
 TIME_LIMIT = 5.0
-"""A check takes no longer than this [s]."""
+"""An answer takes no longer than this [s], as far as `stopping.limited` can stop it."""
+LONGEST = 120
+"""More characters of what a student's answer says are not shown."""
 
-_tries = Counter()  # by exercise: how many different answers got a general hint
-_last = {}  # by exercise: what was answered last
+_tries = Counter()  # by exercise and answer: how many different ones got a general hint
+_last = {}  # by exercise and answer: what was answered last
 
 
 class Wrong(Exception):
@@ -27,18 +29,21 @@ class Wrong(Exception):
     what : str
         What was found, in words for the student: never the right answer.
     mistake : str, optional
-        The name of the mistake, if its very result was recognised; then `what` is the hint that belongs to it.
+        The name of the mistake, if its very result was recognised. If its hint stands on the page, that is told, with
+        `values` for what stands in braces there; else `what` is the hint.
     nudge : bool
         Whether a general hint of the exercise should follow.
+    about : str, optional
+        Which of several answers this is about.
     """
 
-    def __init__(self, what, mistake=None, *, nudge=False):
+    def __init__(self, what="", mistake=None, *, nudge=False, about=None, **values):
         super().__init__(what)
-        self.what, self.mistake, self.nudge = what, mistake, nudge
+        self.what, self.mistake, self.nudge, self.about, self.values = what, mistake, nudge, about, values
 
 
-class _TimeIsUp(BaseException):
-    """Thrown into an answer that does not end; not an Exception, so that few answers catch it."""
+class Open(Wrong):
+    """All that is given is right, and something is not attempted yet."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +56,7 @@ class Feedback:
         Of the exercise, such as "2.1".
     passed, tests : int
     hint : str
-        Empty if there is nothing to say.
+        What else there is to say: a hint, or after the last test the answer to the exercise's closing question.
     mistake : str or None
         The name of the mistake that was recognised.
     """
@@ -68,16 +73,21 @@ class Feedback:
         """Whether every test was passed."""
         return self.attempted and self.passed == self.tests
 
-    def __repr__(self):
-        if not self.attempted:
+    @property
+    def text(self):
+        """All of it, in one line."""
+        if not self.attempted and not self.hint:
             return "○ not attempted yet"
-        line = f"{'✔' if self.done else '✘'} {self.passed} of {self.tests}"
-        return f"{line} — {self.hint}" if self.hint else line
+        mark = "○" if not self.attempted else "✔" if self.done else "✘"
+        return f"{mark} {self.passed} of {self.tests}" + (f" — {self.hint}" if self.hint else "")
+
+    def __repr__(self):
+        return record.readable(self.text)
 
     def _repr_html_(self):
         kind = "info" if not self.attempted else "success" if self.done else "error"
         border = f"border-left: 4px solid var(--jp-{kind}-color1, gray); padding: 2px 10px"
-        return f'<div role="status" style="{border}">{html.escape(repr(self))}</div>'
+        return f'<div role="status" style="{border}">{html.escape(self.text)}</div>'
 
 
 class Exercise:
@@ -88,51 +98,156 @@ class Exercise:
     number : str
         Lesson and place, such as "2.1".
     title : str
-    tests : int
-        How often `judge` yields for a right answer.
+    name : str
+        ``checks.name`` is the check.
+    answers : tuple of str
+        What a student calls them.
     hints : tuple of str
-        General hints, the first for a first try, each more concrete than the one before.
-    judge : generator function
-        ``judge(*answers)`` yields once for each test passed, and raises `Wrong` at the first that is not.
+        General hints, the first for a first try, each more concrete than the one before. One that begins with an
+        answer's name in backticks is for that answer only.
+    judge : callable
+        ``judge(answers, names, TIME_LIMIT)`` returns how many tests are passed, and a `Wrong` or None; ``judge.tests``
+        is how many there are. An answer may be ``...`` if ``judge.takes_open`` is true.
+    named : dict, optional
+        The hint of every mistake.
+    closing : str, optional
+        What to say when it is done.
     """
 
-    def __init__(self, number, title, tests, hints, judge):
-        self.number, self.title, self.tests, self.hints, self.judge = number, title, tests, hints, judge
-        self.__name__, self.__doc__ = judge.__name__, f"Check exercise {number}: {title}."
+    def __init__(self, number, title, name, answers, hints, judge, named=None, closing=""):
+        self.number, self.title, self.answers, self.hints = number, title, answers, hints
+        self.judge, self.named, self.closing = judge, named or {}, closing
+        self.__name__, self.__doc__ = name, f"Check exercise {number}: {title}."
 
-    def __call__(self, *answers):
+    @property
+    def tests(self):
+        """How many tests there are."""
+        return self.judge.tests
+
+    def __call__(self, *answers, **named):
         """Judge an answer.
 
         Returns
         -------
         Feedback
-            Never raises, whatever the answer does.
+            Never raises, whatever the answer does; only *Interrupt* does.
         """
-        if any(_untouched(answer) for answer in answers):
+        if named or len(answers) != len(self.answers):
+            call = f"checks.{self.__name__}({', '.join(self.answers)})"
+            return Feedback(self.number, 0, self.tests, f"Please call it as in the lesson: {call}")
+        missing = [name for name, answer in zip(self.answers, answers, strict=True) if _untouched(answer)]
+        if len(missing) == len(answers):
             return Feedback(self.number, 0, self.tests, attempted=False)
-        passed, wrong = _judged(self.judge, answers)
-        if wrong is None and passed == self.tests:
-            _tries[self.number] = 0
-            _last.pop(self.number, None)
+        passed, wrong = 0, Open()
+        if not missing or self.judge.takes_open:
+            passed, wrong = self.judge(answers)
+        if wrong is None:
+            for key in [key for key in _last if key[0] == self.number]:
+                del _tries[key], _last[key]
             record.add(self.number)
-            return Feedback(self.number, passed, self.tests)
-        hint = wrong.what
+            return Feedback(self.number, passed, self.tests, self.closing)
+        if isinstance(wrong, Open):
+            hint = f"{'right so far; ' if passed else ''}{' and '.join(missing)}: not attempted yet"
+            return Feedback(self.number, passed, self.tests, hint, attempted=False)
+        hint = self.named[wrong.mistake].format(**wrong.values) if wrong.mistake in self.named else wrong.what
         if wrong.nudge:
-            hint = f"{hint} {self._general_hint(answers)}"
+            hint = f"{hint} {self._general_hint(wrong.about, answers)}"
         return Feedback(self.number, passed, self.tests, hint, wrong.mistake)
 
-    def _general_hint(self, answers):
+    def _general_hint(self, about, answers):
         """The next one, unless the same answer is tried again."""
-        told = [_told_apart(answer) for answer in answers]
-        if self.number in _last and _last[self.number] != told:
-            _tries[self.number] += 1
-        _last[self.number] = told
-        return self.hints[min(_tries[self.number], len(self.hints) - 1)]
+        if about:
+            answers = [answers[self.answers.index(about)]]
+        key, told = (self.number, about), [_told_apart(answer) for answer in answers]
+        if key in _last and _last[key] != told:
+            _tries[key] += 1
+        _last[key] = told
+        own = [re.fullmatch(r"`(my_\w+)`:? (.*)", hint) for hint in self.hints]
+        fitting = [
+            match.group(2) if match else hint
+            for match, hint in zip(own, self.hints, strict=True)
+            if not match or match.group(1) == about
+        ]
+        return fitting[min(_tries[key], len(fitting) - 1)]
+
+
+class Steps:
+    """A judge in Python: ``judge(*answers)`` yields once for each of its tests, and raises `Wrong` at the first that is
+    not passed.
+    """
+
+    takes_open = False
+
+    def __init__(self, judge, tests):
+        self.judge, self.tests = judge, tests
+
+    def __call__(self, answers):
+        passed = 0
+
+        def work():
+            nonlocal passed
+            for _ in self.judge(*answers):
+                passed += 1
+
+        _, wrong = guarded(work, TIME_LIMIT)
+        return passed, wrong
+
+
+def guarded(work, seconds):
+    """What ``work()`` returns and None, or None and a `Wrong` that says in words what it raises."""
+    try:
+        return quietly(work, seconds), None
+    except Wrong as wrong:
+        return None, wrong
+    except KeyboardInterrupt:
+        raise
+    except TimeIsUp:
+        return None, Wrong(f"Your answer was stopped after {TIME_LIMIT:.0f} s: does a loop never end?")
+    except BaseException as error:
+        return None, Wrong(raised(error))
+
+
+def raised(error):
+    """What a student's function raised, and in which line of its cell."""
+    if isinstance(error, RecursionError):
+        return "Your answer calls itself again and again, without an end."
+    text = text_of(error)
+    if "for ^" in text:
+        return f"In Python a power is written **: there is a ^{_line(error)}."
+    return f"Your answer raised {type(error).__name__}{f': {text}' if text else ''}{_line(error)}."
+
+
+def text_of(thing, write=str):
+    """``str`` of something that may raise when asked, in one line that is not too long."""
+    try:
+        text = " ".join(write(thing)[: 10 * LONGEST].split())
+    except Exception:
+        return ""
+    return text if len(text) <= LONGEST else f"{text[: LONGEST - 1]}…"
+
+
+def _line(error):
+    """The last line of a cell that was at work, whatever it called in a library."""
+    frames = [frame for frame in traceback.extract_tb(error.__traceback__) if not _installed(frame.filename)]
+    return f" in line {frames[-1].lineno} of its cell" if frames else ""
+
+
+def _installed(filename):
+    """Whether this is a file of the library, of Python or of a package, and no cell."""
+    return "site-packages" in filename or filename.startswith(("<__array", *_ELSEWHERE))
+
+
+_ELSEWHERE = str(Path(__file__).parent.parent), inspect.getfile(inspect).removesuffix("inspect.py")
 
 
 def exercise(number, title, *, tests, hints):
-    """Make a check of a generator function: see `Exercise`."""
-    return lambda judge: Exercise(number, title, tests, hints, judge)
+    """Make a check of a generator function: see `Steps`."""
+
+    def made(judge):
+        answers = tuple(inspect.signature(judge).parameters)
+        return Exercise(number, title, judge.__name__, answers, hints, Steps(judge, tests))
+
+    return made
 
 
 def _stub(): ...
@@ -144,56 +259,16 @@ def _described_stub():
 
 def _untouched(answer):
     """Whether an answer is still the dots: ``...`` itself, or a function that holds nothing else."""
-    code = getattr(answer, "__code__", None)
-    if code is None:
+    if type(answer) is not types.FunctionType:
         return answer is ...
+    code = answer.__code__
     empty = (_stub.__code__.co_code, _described_stub.__code__.co_code)
     return code.co_code in empty and not code.co_names and code.co_consts[-1] is None
 
 
 def _told_apart(answer):
-    code = getattr(answer, "__code__", None)
-    return (code.co_code, repr(code.co_consts), code.co_names) if code else repr(answer)
-
-
-def _judged(judge, answers):
-    """How many tests are passed, and what was wrong or None; in a thread of its own, which is stopped if need be."""
-    found = {"passed": 0, "wrong": None}
-
-    def work():
-        try:
-            for _ in judge(*answers):
-                found["passed"] += 1
-        except Wrong as wrong:
-            found["wrong"] = wrong
-        except _TimeIsUp:
-            found["wrong"] = Wrong(_too_long())
-        except RecursionError:
-            found["wrong"] = Wrong("Your answer calls itself again and again, without an end.")
-        except BaseException as error:
-            found["wrong"] = Wrong(_raised(error))
-
-    with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
-        thread = threading.Thread(target=work, daemon=True)
-        thread.start()
-        thread.join(TIME_LIMIT)
-        for _ in range(20):
-            if not thread.is_alive():
-                return found["passed"], found["wrong"]
-            # works on every system, at the next line of Python that the thread executes
-            ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread.ident), ctypes.py_object(_TimeIsUp))
-            thread.join(0.05)
-    return found["passed"], Wrong(_too_long())
-
-
-def _too_long():
-    return f"Your answer was stopped after {TIME_LIMIT:.0f} s: does a loop never end?"
-
-
-def _raised(error):
-    """What a student's function raised, and in which line of it; nothing of the check's own lines."""
-    library = str(Path(__file__).parent.parent)
-    own = [frame for frame in traceback.extract_tb(error.__traceback__) if not frame.filename.startswith(library)]
-    where = f" in line {own[-1].lineno} of its cell" if own else ""
-    what = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
-    return f"Your answer raised {what}{where}."
+    """The same for the same answer, also if it was made anew: no addresses."""
+    function = answer if type(answer) is types.FunctionType else type(answer).__call__
+    code = getattr(function, "__code__", None)
+    shown = repr((code.co_code, code.co_consts, code.co_names)) if code else text_of(answer, repr)
+    return re.sub(r"0x[0-9a-fA-F]+", "", shown)

@@ -221,10 +221,7 @@ def energy_for_the_air(taken):
             "the notebook's booster": (_lost(sum(_energies(flight, EARTH, FALCON_9.initial_mass))), others),
             "the notebook's drag": (-_running(Descent().drag(flight.h, flight.v) * flight.v, flight.t), others),
         }
-        before = [getattr(flight, name).copy() for name in ("t", "h", "v", "mass")]
         got = repeatable(taken, flight)
-        if not all(map(np.array_equal, before, (flight.t, flight.h, flight.v, flight.mass))):
-            raise Wrong("Your function changes the flight that it is given: work on a copy.", "changes the flight")
         if np.ndim(got) == 0 and got is not None and math.isclose(number(got), right[-1], abs_tol=close):
             raise Wrong("That is the last sample. Asked is one number for each sample.", "last sample only")
         got, momentum = array(got, right.shape), _running(drag, flight.t)

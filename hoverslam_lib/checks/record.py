@@ -1,16 +1,26 @@
-"""Which exercises are done, and where their solutions are."""
+"""Which exercises are done: an empty file for each, so two notebooks never write to the same one."""
 
+import contextlib
 import html
 import json
-import os
-import re
-import tempfile
+import sys
 from pathlib import Path
 
 import platformdirs
 
-FILE = ".hoverslam_progress.json"
-SOLUTIONS = Path(__file__).resolve().parents[2] / "notebooks" / "solutions"
+FOLDER = ".hoverslam_progress"
+MARKS = str.maketrans("✔✘○—", "+-o-")
+"""For a terminal that does not know them."""
+
+
+def readable(text):
+    """The text, as far as the terminal can write it."""
+    encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
+    try:
+        text.encode(encoding)
+    except UnicodeEncodeError:
+        return text.translate(MARKS).encode(encoding, "replace").decode(encoding)
+    return text
 
 
 class Page:
@@ -20,7 +30,7 @@ class Page:
         self.text = text
 
     def __repr__(self):
-        return self.text
+        return readable(self.text)
 
     def _repr_html_(self):
         return f'<pre role="status">{html.escape(self.text)}</pre>'
@@ -28,62 +38,51 @@ class Page:
 
 def _places():
     """Where the record may be: in the student's folder, or where the system keeps a user's data."""
-    return [Path.cwd() / FILE, Path(platformdirs.user_data_dir("hoverslam")) / FILE]
+    places = [Path(platformdirs.user_data_dir("hoverslam")) / FOLDER]
+    try:
+        return [Path.cwd() / FOLDER, *places]
+    except OSError:  # the folder has been deleted
+        return places
 
 
 def done():
-    """Numbers of the exercises that are done, as a set of str; a record that cannot be read counts as empty."""
+    """Numbers of the exercises that are done, as a set of str; what cannot be read counts as empty."""
     found = set()
     for place in _places():
-        try:
-            numbers = json.loads(place.read_text(encoding="utf-8"))["done"]
-            found |= {number for number in numbers if isinstance(number, str)}
-        except (OSError, ValueError, TypeError, KeyError):
-            continue
+        with contextlib.suppress(OSError):
+            found |= {path.name for path in place.iterdir()}
+        found |= _once_kept(place.with_suffix(".json"))
     return found
+
+
+def _once_kept(path):
+    """The record of earlier versions of the course, one file for all; only read."""
+    try:
+        kept = json.loads(path.read_text(encoding="utf-8-sig"))["done"]
+    except (OSError, ValueError, TypeError, KeyError):
+        return set()
+    return {number for number in kept if isinstance(number, str)} if isinstance(kept, list) else set()
 
 
 def add(number):
     """Keep that an exercise is done; where nothing can be written, nothing is."""
-    numbers = done()
-    if number in numbers:
+    if number in done():
         return
-    text = json.dumps({"done": sorted(numbers | {number})})
     for place in _places():
         try:
-            place.parent.mkdir(parents=True, exist_ok=True)
-            handle, name = tempfile.mkstemp(dir=place.parent, prefix=FILE)
-            with os.fdopen(handle, "w", encoding="utf-8") as file:
-                file.write(text)
-            os.replace(name, place)  # at once or not at all: a cut connection leaves no half a file
+            place.mkdir(parents=True, exist_ok=True)
+            (place / number).touch()
         except OSError:
             continue
         return
 
 
-def solution(number):
-    """Show the solution of an exercise.
+def old_solution(number):
+    """Of a lesson that has no page yet."""
+    import re
 
-    Parameters
-    ----------
-    number : str
-        Such as "2.1".
-
-    Returns
-    -------
-    Page
-    """
-    lesson, _, _ = str(number).partition(".")
-    path = SOLUTIONS / f"lesson_{lesson.zfill(2)}.py"
-    if not path.exists():
-        return Page(f"There is no solution to exercise {number} here: ask your instructor.")
-    parts = blocks(path.read_text(encoding="utf-8"))
-    if str(number) not in parts:
-        return Page(f"There is no exercise {number}; lesson {lesson} has {', '.join(parts)}.")
-    return Page(parts[str(number)])
-
-
-def blocks(source):
-    """The solutions in a module by the number of their exercise; each begins with a line like ``# %% 2.1 · title``."""
-    parts = re.split(r"(?m)^# %% (\d+\.\d+)[^\n]*\n", source)
-    return {number: text.strip() for number, text in zip(parts[1::2], parts[2::2], strict=True)}
+    path = (
+        Path(__file__).resolve().parents[2] / "notebooks/solutions" / f"lesson_{number.partition('.')[0].zfill(2)}.py"
+    )
+    parts = re.split(r"(?m)^# %% (\d+\.\d+)[^\n]*\n", path.read_text(encoding="utf-8"))
+    return dict(zip(parts[1::2], parts[2::2], strict=True))[number].strip()

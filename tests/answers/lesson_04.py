@@ -1,7 +1,5 @@
 """Answers that students give to the exercises of lesson 4."""
 
-import math
-
 import numpy as np
 
 from hoverslam_lib import integrators
@@ -23,16 +21,6 @@ def _as_it_is(x):
     return x
 
 
-def _slope_twice_too_steep(r, u):
-    for _ in range(50):
-        nudge = 1e-6 * (1 + abs(u))
-        slope = (r(u + nudge) - r(u - nudge)) / nudge
-        u = u - r(u) / slope
-        if abs(r(u)) < 1e-12:
-            return u
-    raise ArithmeticError("no zero")
-
-
 def _stops_early(r, u):
     for _ in range(50):
         u = u - r(u) * 1e-6 / (r(u + 1e-6) - r(u))
@@ -48,15 +36,6 @@ def _central(r, u):
         if abs(r(u)) < 1e-12:
             return u
     raise ArithmeticError("no zero")
-
-
-def _raises_in_the_loop(r, u):
-    for _ in range(50):
-        slope = (r(u + 1e-6) - r(u)) / 1e-6
-        u = u - r(u) / slope
-        if abs(r(u)) < 1e-12:
-            return u
-        raise ArithmeticError("no zero")
 
 
 def _raises_always(r, u):
@@ -126,25 +105,12 @@ def _mean(h, v, u, dt):
     return h + dt / 2 * (v + u)
 
 
-def _end(h, v, u, dt):
-    return h + dt * u
-
-
-def _sum(h, v, u, dt):
-    return h + dt * (v + u)
-
-
 def _both(f0, at, place):
     return (f0 + at(1, place)) / 2
 
 
 def _solved(*args, place=_mean, slope=_both, arrive=_mean, aloud=True):
     return _step(*args, place=place, slope=slope, arrive=arrive, aloud=aloud)
-
-
-def _heun(f, t, h, v, dt):
-    guess = v + dt * f(t, h, v)
-    return h + dt * (v + guess) / 2, v + dt / 2 * (f(t, h, v) + f(t + dt, h + dt * v, guess))
 
 
 def _heun_mean(f, t, h, v, dt):
@@ -166,11 +132,6 @@ def _again_and_again_aloud(f, t, h, v, dt):
         if abs(u - old) < 1e-12:
             return h + dt / 2 * (v + u), u
     raise ArithmeticError("not converged")
-
-
-def _once(f, t, h, v, dt):
-    _, u = _heun_mean(f, t, h, v, dt)
-    return h + dt * (v + u) / 2, u
 
 
 def _midpoint(f, t, h, v, dt):
@@ -203,33 +164,20 @@ def _by_scipy(f, t, h, v, dt):
 # exercise: what was answered, and the name of the mistake if it has one
 WRONG = {
     "4.1": [
-        ((100.0, 7), "slowest droplet"),
         ((1.33, 7), "mean rate"),
-        ((1.0, 7), None),
-        ((2000 / 1506.6667, 7), "mean rate"),
-        ((0.0005, 7), "in seconds"),
-        ((0.25, 7), "gone in one step"),
         ((0.696, 7), "limit of Runge-Kutta"),
+        ((1.0, 7), None),
         ((2000, 7), None),
-        ((0.5, 4), "exact solution"),
-        ((0.5, 6), "one step short"),
-        ((0.5, math.log(1000) / math.log(3)), "not a whole number"),
-        ((0.5, 500), "added up"),
-        ((0.5, 2), "fastest droplet"),
-        ((0.5, 10), "divided by λΔt"),
         ((500, 7), None),
         ((0.5, 8), None),
         ((0.5, "seven"), None),
+        ((..., 6), "one step short"),
     ],
     "4.2": [
         (lambda r, u: _newton(r, u, +1, _as_it_is, aloud=False), "turned away"),
-        (lambda r, u: _newton(r, u, +1, abs), "turned away"),
         (lambda r, u: _newton(r, u, -1, _as_it_is), "a negative residual is small"),
-        (lambda r, u: _newton(r, u, -1, _as_it_is, aloud=False), "a negative residual is small"),
-        (lambda r, u: _newton(r, u, aloud=False), "gives up in silence"),
         (lambda r, u: _newton(r, u, turns=2), None),
         (lambda r, u: print(_newton(r, u)), None),
-        (_raises_in_the_loop, None),
         (_raises_another, None),
         (_returns_the_error, "returns the error"),
         (lambda r, u: u, None),
@@ -238,26 +186,10 @@ WRONG = {
         (lambda r, u: _newton(r, u, turns=10_000, aloud=False), "gives up in silence"),
         (lambda r, u: round(_newton(r, u), 4), None),
         (_stops_early, None),
-        (_slope_twice_too_steep, "half a turn"),
     ],
     "4.3": [
-        (lambda *a: _solved(*a, place=_end, arrive=_end, slope=lambda f0, at, x: at(1, x)), "implicit Euler"),
-        (lambda *a: _solved(*a, arrive=_end), "the old return"),
-        (lambda *a: _solved(*a, place=_end), "the old place"),
-        (lambda *a: _solved(*a, place=_end, arrive=_end), "height by the new velocity"),
-        (lambda *a: _solved(*a, slope=lambda f0, at, x: (f0 + at(0, x)) / 2), "time of the start"),
-        (lambda *a: _solved(*a, slope=lambda f0, at, x: f0 + at(1, x)), "not halved"),
-        (lambda *a: _solved(*a, arrive=_sum), "height not halved"),
-        (lambda *a: _solved(*a, place=_sum, arrive=_sum), "no height halved"),
-        (lambda *a: _solved(*a, place=_sum, arrive=_sum, slope=lambda f0, at, x: f0 + at(1, x)), "nothing halved"),
         (_midpoint, "mean place"),
-        (_once, "not solved"),
         (_heun_mean, "not solved, nor the height"),
-        (_heun, "Heun"),
-        (
-            lambda *a: np.mean([integrators.explicit_euler(*a), integrators.implicit_euler(*a)], axis=0),
-            "mean of two steps",
-        ),
         (_again_and_again, "answer put in again"),
         (_again_and_again_aloud, "answer put in again"),
         (lambda *a: _solved(*a, aloud=False), "gives up in silence"),

@@ -181,7 +181,7 @@ WRONG = {
         (lambda flight: _energy()(flight)[-1], "last sample only"),
         (lambda flight: -trapezoid(flight.descent.drag(flight.h, flight.v), flight.h), "last sample only"),
         (lambda flight: cumulative_trapezoid(-flight.descent.drag(flight.h, flight.v), flight.h), None),
-        (_changes_the_flight, "changes the flight"),
+        (_changes_the_flight, "changes its arguments"),
         (lambda flight: flight.descent.drag(flight.h, flight.v), None),
         (lambda flight: 0 * flight.t, None),
         (lambda flight: -_energy()(flight) + _start(flight), "what is left, counted from infinity"),

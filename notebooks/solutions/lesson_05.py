@@ -14,9 +14,13 @@ def my_three_eighths(f, t, h, v, dt):
     k2h = v + dt / 3 * k1v
     k2v = f(t + dt / 3, h + dt / 3 * k1h, k2h)
     k3h = v + dt * (k2v - k1v / 3)
-    k3v = f(t + 2 * dt / 3, h + dt * (k2h - k1h / 3), k3h)  # the third look is two thirds on: no spring can tell
+    k3v = f(
+        t + 2 * dt / 3, h + dt * (k2h - k1h / 3), k3h
+    )  # the third look is two thirds on: no spring can tell
     k4h = v + dt * (k1v - k2v + k3v)
-    k4v = f(t + dt, h + dt * (k1h - k2h + k3h), k4h)  # at its own velocity: without friction nobody notices
+    k4v = f(
+        t + dt, h + dt * (k1h - k2h + k3h), k4h
+    )  # at its own velocity: without friction nobody notices
     h_new = h + dt / 8 * (k1h + 3 * k2h + 3 * k3h + k4h)
     v_new = v + dt / 8 * (k1v + 3 * k2v + 3 * k3v + k4v)
     return h_new, v_new

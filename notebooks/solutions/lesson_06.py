@@ -16,7 +16,14 @@ my_height_km = 8.4 * math.log(2**2)  # twice the speed needs a quarter of the de
 # %% 6.2 · drag in a wind
 def my_drag_in_wind(h, v, wind):
     relative = v - wind  # what the air feels of the booster; the ground does not come into it
-    return -0.5 * planet.air_density(h) * booster.drag_coefficient * booster.area * abs(relative) * relative
+    return (
+        -0.5
+        * planet.air_density(h)
+        * booster.drag_coefficient
+        * booster.area
+        * abs(relative)
+        * relative
+    )
 
 
 # %% 6.3 · what the air has taken

@@ -3,8 +3,9 @@
 ``python -m hoverslam_lib.course refresh [LESSON…]`` executes lessons from top to bottom in a fresh kernel, cleans and
 checks what they store. ``python -m hoverslam_lib.course copy FOLDER`` makes a student's working copy, without outputs,
 that git leaves alone, or goes on with the one that is there; with ``--lesson 3`` it puts a fresh lesson beside the
-edited one, with ``--for-teaching`` it keeps the outputs and adds what instructors need. ``python -m
-hoverslam_lib.course print FOLDER [LESSON…]`` writes pages to print or to read without a network.
+edited one, with ``--for-teaching`` it keeps the outputs and adds what instructors need, with ``--withhold-solutions``
+``checks.show_solution`` says there to ask the instructor. ``python -m hoverslam_lib.course print FOLDER [LESSON…]``
+writes pages to print or to read without a network.
 """
 
 import argparse
@@ -190,7 +191,7 @@ def _numbers(version):
     return tuple(int(number) for number in re.findall(r"\d+", version))
 
 
-def copy(folder, lesson=None, for_teaching=False):
+def copy(folder, lesson=None, for_teaching=False, withhold_solutions=False):
     """Make a working copy of the notebooks, or complete the one that is there; nothing that is there is overwritten.
 
     Parameters
@@ -201,6 +202,9 @@ def copy(folder, lesson=None, for_teaching=False):
         Number or name: put a fresh copy of this lesson, under a new name, beside the one that is there.
     for_teaching : bool, optional
         Keep the outputs, which hold the answers to the predictions, and add the instructor's guide and mission control.
+    withhold_solutions : bool, optional
+        Leave a marker, `checks.WITHHELD`, at which ``checks.show_solution`` says to ask the instructor. Who looks into
+        the library finds the solutions all the same.
 
     Returns
     -------
@@ -214,10 +218,10 @@ def copy(folder, lesson=None, for_teaching=False):
     OSError
         If the file system refuses.
     """
-    return list(_copying(Path(folder), lesson, for_teaching))
+    return list(_copying(Path(folder), lesson, for_teaching, withhold_solutions))
 
 
-def _copying(folder, lesson, for_teaching):
+def _copying(folder, lesson, for_teaching, withhold_solutions):
     """What `copy` writes, as soon as it is written."""
     sources = _sources(for_teaching)
     again = None if lesson is None else _picked(lesson, [path for path in sources if path.suffix == ".ipynb"])
@@ -232,6 +236,11 @@ def _copying(folder, lesson, for_teaching):
             target = folder / f"{source.stem}_fresh_{n}.ipynb"
         if not os.path.lexists(target):
             yield _write(target, _content(source, for_teaching))
+    if withhold_solutions:
+        from hoverslam_lib.checks import WITHHELD
+
+        if not os.path.lexists(folder / WITHHELD):
+            yield _write(folder / WITHHELD, b"")
 
 
 def _sources(for_teaching):
@@ -326,6 +335,7 @@ def main(arguments=None):
     copying.add_argument("folder")
     copying.add_argument("--lesson", help="number or name: a fresh copy of this lesson beside the edited one")
     copying.add_argument("--for-teaching", action="store_true", help="with outputs, guide and mission control")
+    copying.add_argument("--withhold-solutions", action="store_true", help="show_solution says to ask the instructor")
     printing = commands.add_parser("print", help="write lessons as pages to print or to read without a network")
     printing.add_argument("folder")
     printing.add_argument("lesson", nargs="*", help="number or name; all lessons if left out")
@@ -387,7 +397,7 @@ def _print_all(options):
 
 def _copy_all(options):
     written = 0
-    for path in _copying(Path(options.folder), options.lesson, options.for_teaching):
+    for path in _copying(Path(options.folder), options.lesson, options.for_teaching, options.withhold_solutions):
         print(f"wrote {path}", flush=True)
         written += 1
     if not written:

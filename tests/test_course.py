@@ -11,7 +11,7 @@ from pathlib import Path
 import nbformat
 import pytest
 
-from hoverslam_lib import course
+from hoverslam_lib import checks, course
 
 ROOT = course.NOTEBOOKS.parent
 FIGURE = """
@@ -354,6 +354,19 @@ def test_readme_s_first_command_twice_makes_the_copy_and_goes_on_with_it(tmp_pat
 
 
 # ---- pages --------------------------------------------------------------------------------------------------------
+
+
+def test_copy_that_withholds_solutions_says_to_ask_the_instructor(folder, tmp_path, monkeypatch, capsys):
+    copied = tmp_path / "copy"
+    monkeypatch.chdir(tmp_path)
+    assert course.main(["copy", "copy"]) == 0
+    monkeypatch.chdir(copied)
+    assert "def my_energy_factor" in repr(checks.show_solution("2.1"))
+    monkeypatch.chdir(tmp_path)
+    assert course.main(["copy", "copy", "--withhold-solutions"]) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == f"wrote {Path('copy') / checks.WITHHELD}"
+    monkeypatch.chdir(copied)
+    assert repr(checks.show_solution("2.1")) == "The solution to exercise 2.1 is withheld here: ask your instructor."
 
 
 def test_printed_page_needs_no_network_and_no_script(folder, tmp_path, capsys):

@@ -60,14 +60,6 @@ def _g_load(t_ignite, t, h, v):
 
 WRONG = {
     "11.1": [
-        ((25.8, 0.93), "kN for N"),
-        ((24_991, 1.49), "gravity added"),
-        ((26_715, 0.33), "gravity subtracted"),
-        ((253_333, 0.93), "30 m/s^2"),
-        ((27_200, 0.0), "dry mass"),
-        ((25_824, 21.2), "since ignition"),
-        ((25_824, -0.929), "before, not after"),
-        ((25_824, 17.45), "mass alone"),
         ((25_824, 57.1), None),
         ((1_375, 0.93), None),
         (("25.8 t", 0.93), None),
@@ -75,9 +67,8 @@ WRONG = {
         ((25_824, 929), None),
     ],
     "11.2": [
-        (lambda t, h, v: True, "always an alarm"),
-        (lambda t, h, v: False, "never an alarm"),
-        (lambda t, h, v: not _steps(t, h, v), "True for sound"),
+        (lambda t, h, v: np.any(np.abs(_off(t, h, v)) > 300 * np.diff(t) ** 3 + 1e-6), None),
+        (lambda t, h, v: np.any(np.abs(_off(t, h, v)) > 1e4 * np.diff(t) ** 3 + 1e-6), None),
         (lambda t, h, v: np.any(np.abs(np.gradient(h, t) - v) > 5), None),
         (lambda t, h, v: np.any(np.abs(_off(t, h, v)) > 1.0), None),
         (lambda t, h, v: np.any(_off(t, h, v) > 300 * np.diff(t) ** 2), None),
@@ -96,9 +87,6 @@ WRONG = {
         (lambda t, h, v: "ALARM", None),
     ],
     "11.3": [
-        (lambda t_ignite, t, h, v: True, "always an alarm"),
-        (lambda t_ignite, t, h, v: False, "never an alarm"),
-        (lambda t_ignite, t, h, v: not _air(t_ignite, t, h, v), "True for sound"),
         (_ledger, None),
         (lambda *a: _ledger(*a, share=1.5, limit=1e5), None),
         (_rocket, None),
@@ -114,7 +102,7 @@ WRONG = {
 }
 
 RIGHT = {
-    "11.1": [(25_824.7, 0.929), (7.6e6 / 30 / 9.81, 0.93), (np.float64(25_820), np.float64(0.925))],
+    "11.1": [(25_824.7, 0.929), (25_800, 0.95), (7.6e6 / 30 / 9.81, 0.93), (np.float64(25_820), np.float64(0.925))],
     "11.2": [
         _steps,
         _between,

@@ -58,35 +58,14 @@ def _mix(a, b, trust):
 
 WRONG = {
     "12.1": [
-        ((134.4, 3063), "all of it halved"),
-        ((133, 3000), "drag taken away"),
-        ((152, 3460), "half the drag taken away"),
-        ((362, 8250), "added, not squared"),
-        ((212, 4830), "square half"),
-        ((31_556, 4000), "no root"),
-        ((178, 6126), "as before"),
-        ((178, 0.00025), "share"),
-        ((178, 1615), "no bell"),
-        ((178, 10_150), "two pi"),
         ((269, 6000), None),
-        ((218, 4970), None),
+        ((218, 1820), None),
         ((178, 0.4), None),
-        (("178 m", 4000), None),
+        (("178 m", 1480), None),
+        ((133.7, 1480), "drag taken away"),
+        ((131.8, 1480), "air taken away"),
     ],
     "12.2": [
-        (lambda h, v, a, dt, hs, vs, k: _blend(h, v, a, dt, hs, vs, 1 - k), "trust upside down"),
-        (lambda h, v, a, dt, hs, vs, k: (_mix(h, hs, k), _mix(v, vs, k)), "nothing expected"),
-        (lambda h, v, a, dt, hs, vs, k: (_mix(h + v * dt, hs, k), _mix(v + a * dt, vs, k)), "no acceleration in h"),
-        (
-            lambda h, v, a, dt, hs, vs, k: (_mix(h + (v + a * dt) * dt, hs, k), _mix(v + a * dt, vs, k)),
-            "new v in the move",
-        ),
-        (lambda h, v, a, dt, hs, vs, k: (h + v * dt + a * dt**2 / 2, v + a * dt), "only expected"),
-        (lambda h, v, a, dt, hs, vs, k: (_blend(h, v, a, dt, hs, vs, k)[0], v + a * dt), "only h mixed"),
-        (
-            lambda h, v, a, dt, hs, vs, k: (_mix(h + v * dt + a * dt**2, hs, k), _mix(v + a * dt, vs, k)),
-            "new v in the move",
-        ),
         (lambda h, v, a, dt, hs, vs, k: (_mix(h + v * dt - a * dt**2 / 2, hs, k), _mix(v - a * dt, vs, k)), None),
         (lambda h, v, a, dt, hs, vs, k: (h + k * hs, v + k * vs), None),
         (lambda h, v, a, dt, hs, vs, k: (h + v * dt + a * dt**2 / 2, _mix(v + a * dt, vs, k)), None),
@@ -96,11 +75,8 @@ WRONG = {
         (lambda h, v, a, dt, hs, vs, k: _blend(h, v, a, dt, hs, vs, k)[::-1], None),
     ],
     "12.3": [
-        (lambda t, h, v, mass: 0.7, "constant throttle"),
         (lambda t, h, v, mass: 1.0, "constant throttle"),
-        (_switch, "on and off"),
         (lambda *a: _switch(*a, share=0.75), "on and off"),
-        (_lessons, "the lesson's law"),
         (lambda *a: _lessons(*a, v_td=1.5), None),
         (lambda *a: _lessons(*a, least=0.5), None),
         (_gentle, None),
@@ -110,9 +86,7 @@ WRONG = {
         (lambda t, h, v, mass: _lessons(t, h, v, mass) if h > 2 else LOWEST, None),
         (lambda t, h, v, mass: _lessons(t, h, v, 30e3), None),
         (lambda t, h, v, mass: 0.6 if h > 1000 else 0.8, None),
-        (lambda t, h, v, mass: mass * 9.8 / 845e3 * v**2 / (2 * h), None),
         (lambda t, h, v, mass: math.sqrt(v), None),
-        (lambda *a: 100 * _lessons(*a), "in per cent"),
         (lambda *a: 1e6 * _lessons(*a), None),
         (lambda t, h, v, mass: print(0.7), None),
         (lambda t, h, v, mass: f"{_tracks(t, h, v, mass):.2f}", None),
@@ -120,7 +94,7 @@ WRONG = {
 }
 
 RIGHT = {
-    "12.1": [(178, 4000), (177.6, 4048), (np.sqrt(31_556), 4_050)],
+    "12.1": [(178, 1500), (177.6, 1484), (np.sqrt(31_556), 1_450)],
     "12.2": [_blend, lambda *a: np.array(_blend(*a)), lambda *a: list(_blend(*a))],
     "12.3": [_tracks, _gated, lambda *a: np.array([_gated(*a, gate=30.0)])],
 }

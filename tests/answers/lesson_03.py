@@ -27,24 +27,6 @@ def _by_differences(step, f, x, v, dt, d=1e-5):
     return np.abs(np.linalg.det([slope(1, 0), slope(0, 1)]))
 
 
-def _by_a_round_shape(step, f, x, v, dt):
-    angle = np.linspace(0, 2 * np.pi, 50, endpoint=False)
-    circle = 1e-4 * np.cos(angle), 1e-4 * np.sin(angle)
-    new_x, new_v = step(f, 0.0, x + circle[0], v + circle[1], dt)
-    return _area(new_x - np.mean(new_x), new_v - np.mean(new_v)) / _area(*circle)
-
-
-def _by_a_shape_in_proportion(step, f, x, v, dt):
-    xs, vs = x * np.array([1, 1.001, 1.001, 1]), v * np.array([1, 1, 1.001, 1.001])
-    return _area(*step(f, 0.0, xs, vs, dt)) / _area(xs, vs)
-
-
-def _by_a_shape_as_wide_as_x(step, f, x, v, dt):
-    xs, vs = 1e-5 * np.abs(x) * np.array([0, 1, 1, 0]), 1e-5 * np.abs(v) * np.array([0, 0, 1, 1])
-    new_x, new_v = step(f, 0.0, x + xs, v + vs, dt)
-    return _area(new_x - new_x[0], new_v - new_v[0]) / _area(xs, vs)
-
-
 def _corners_crossing(step, f, x, v, dt):
     xs, vs = 1e-3 * np.array([0, 1, 1, 0]), 1e-3 * np.array([0, 1, 0, 1])
     new_x, new_v = step(f, 0.0, x + xs, v + vs, dt)
@@ -55,27 +37,6 @@ def _verlet(f, t, h, v, dt):
     a = f(t, h, v)
     h_new = h + v * dt + a * dt**2 / 2
     return h_new, v + dt * (a + f(t + dt, h_new, v)) / 2
-
-
-def _verlet_as_an_array(force, time, y, u, step):
-    state = np.array([y, u], dtype=float)
-    state[1] += step / 2 * force(time, state[0], state[1])
-    state[0] += step * state[1]
-    state[1] += step / 2 * force(time + step, state[0], state[1])
-    return state
-
-
-def _verlet_in_place(f, t, h, v, dt):
-    v += dt / 2 * f(t, h, v)
-    h += dt * v
-    v += dt / 2 * f(t + dt, h, v)
-    return h, v
-
-
-def _trapezoid_of_velocities(f, t, h, v, dt):
-    v_new = v + dt * f(t, h, v)
-    h_new = h + dt * (v + v_new) / 2
-    return h_new, v + dt / 2 * (f(t, h, v) + f(t, h_new, v_new))
 
 
 # exercise: what was answered, and the name of the mistake if it has one
@@ -98,8 +59,7 @@ WRONG = {
         (symplectic_euler, "one whole push"),
         (explicit_euler, "explicit Euler"),
         (lambda *at: _verlet(*at)[::-1], "swapped"),
-        (_verlet_in_place, "changes its arguments"),
-        (_trapezoid_of_velocities, "old time"),
+        (lambda f, t, h, v, dt: _verlet(f, t, h.__iadd__(0.1) if np.ndim(h) else h, v, dt), "changes its arguments"),
         (lambda f, t, h, v, dt: (h + dt * (v + dt / 4 * f(t, h, v)), v + dt / 2 * f(t, h, v)), None),
         (lambda f, t, h, v, dt: _verlet(f, t, h, v, dt)[0], None),
         (lambda f, t, h, v, dt: (h, v), None),
@@ -114,11 +74,9 @@ WRONG = {
         (lambda *at: _by_a_square(*at, side=0.1, centred=False), None),
         (lambda *at: _by_a_square(*at, side=0.005, shifted=False), None),
         (_corners_crossing, None),
-        (_by_a_shape_as_wide_as_x, None),
         (lambda *at: _by_a_square(*at, shifted=False), None),
         (lambda *at: _by_a_square(*at, side=1e-9, shifted=False), None),
         (lambda *at: _by_a_square(*at, side=1e-14), None),
-        (_by_a_shape_in_proportion, None),
         (lambda *at: _by_differences(*at, d=1e-8), None),
         (lambda step, f, x, v, dt: 1 + 5 * dt**2, None),
         (lambda step, f, x, v, dt: _by_a_square(step, f, 0.0, 0.0, dt), None),
@@ -130,7 +88,7 @@ RIGHT = {
     "3.1": [(258.3, 121.6), (260.2, 120.75), (np.float64(258.0), np.int64(121)), (np.array([262]), 120)],
     "3.2": [
         _verlet,
-        _verlet_as_an_array,
+        lambda *at: np.array(_verlet(*at)),
         lambda f, t, x, u, d: (
             x + d * (u + d / 2 * f(t, x, u)),
             u + d / 2 * f(t, x, 0) + d / 2 * f(t + d, x + d * (u + d / 2 * f(t, x, 0)), 0),
@@ -139,7 +97,6 @@ RIGHT = {
     "3.3": [
         _by_a_square,
         _by_differences,
-        _by_a_round_shape,
         lambda *at: _by_a_square(*at, side=0.001, centred=False),
         lambda *at: [_by_a_square(*at, side=1e-6)],
     ],

@@ -212,7 +212,7 @@ def raised(error):
     if isinstance(error, RecursionError):
         return "Your answer calls itself again and again, without an end."
     text = text_of(error)
-    if "for ^" in text:
+    if "for ^" in text or "bitwise_xor" in text:
         return f"In Python a power is written **: there is a ^{_line(error)}."
     return f"Your answer raised {type(error).__name__}{f': {text}' if text else ''}{_line(error)}."
 

@@ -79,7 +79,7 @@ class Numbers:
         share, mistake = min(found, key=lambda pair: pair[0], default=(np.inf, None))
         if share <= 1:
             raise Wrong(mistake=mistake, about=name)
-        if off <= 5 and value.rtol > 0:
+        if value.rtol and off <= min(5, 0.3 / value.rtol):  # 60 % off is not near
             raise Wrong(
                 f"Near {value.where}, but more than {100 * value.rtol:g} % off: have you rounded on the way?",
                 nudge=True,

@@ -27,33 +27,10 @@ def _by_differences(step, f, x, v, dt, d=1e-5):
     return np.abs(np.linalg.det([slope(1, 0), slope(0, 1)]))
 
 
-def _by_a_round_shape(step, f, x, v, dt):
-    angle = np.linspace(0, 2 * np.pi, 50, endpoint=False)
-    circle = 1e-4 * np.cos(angle), 1e-4 * np.sin(angle)
-    new_x, new_v = step(f, 0.0, x + circle[0], v + circle[1], dt)
-    return _area(new_x - np.mean(new_x), new_v - np.mean(new_v)) / _area(*circle)
-
-
-def _by_a_shape_in_proportion(step, f, x, v, dt):
-    xs, vs = x * np.array([1, 1.001, 1.001, 1]), v * np.array([1, 1, 1.001, 1.001])
-    return _area(*step(f, 0.0, xs, vs, dt)) / _area(xs, vs)
-
-
-def _by_a_shape_as_wide_as_x(step, f, x, v, dt):
-    xs, vs = 1e-5 * np.abs(x) * np.array([0, 1, 1, 0]), 1e-5 * np.abs(v) * np.array([0, 0, 1, 1])
-    new_x, new_v = step(f, 0.0, x + xs, v + vs, dt)
-    return _area(new_x - new_x[0], new_v - new_v[0]) / _area(xs, vs)
-
-
 def _corners_crossing(step, f, x, v, dt):
     xs, vs = 1e-3 * np.array([0, 1, 1, 0]), 1e-3 * np.array([0, 1, 0, 1])
     new_x, new_v = step(f, 0.0, x + xs, v + vs, dt)
     return _area(new_x - new_x[0], new_v - new_v[0]) / _area(xs, vs)
-
-
-def _energy_ratio(step, f, x, v, dt):
-    x_new, v_new = step(f, 0.0, x, v, dt)
-    return (x_new**2 + v_new**2) / (x**2 + v**2)
 
 
 def _verlet(f, t, h, v, dt):
@@ -62,120 +39,18 @@ def _verlet(f, t, h, v, dt):
     return h_new, v + dt * (a + f(t + dt, h_new, v)) / 2
 
 
-def _verlet_as_an_array(force, time, y, u, step):
-    state = np.array([y, u], dtype=float)
-    state[1] += step / 2 * force(time, state[0], state[1])
-    state[0] += step * state[1]
-    state[1] += step / 2 * force(time + step, state[0], state[1])
-    return state
-
-
-def _verlet_in_place(f, t, h, v, dt):
-    v += dt / 2 * f(t, h, v)
-    h += dt * v
-    v += dt / 2 * f(t + dt, h, v)
-    return h, v
-
-
-def _old_place(f, t, h, v, dt):
-    a = f(t, h, v)
-    v = v + dt / 2 * a
-    h = h + dt * v
-    return h, v + dt / 2 * a
-
-
-def _old_time(f, t, h, v, dt):
-    v = v + dt / 2 * f(t, h, v)
-    h = h + dt * v
-    return h, v + dt / 2 * f(t, h, v)
-
-
-def _time_of_the_middle(f, t, h, v, dt):
-    v = v + dt / 2 * f(t, h, v)
-    h = h + dt * v
-    return h, v + dt / 2 * f(t + dt / 2, h, v)
-
-
-def _explicit_midpoint(f, t, h, v, dt):
-    h_mid, v_mid = h + dt / 2 * v, v + dt / 2 * f(t, h, v)
-    return h + dt * v_mid, v + dt * f(t + dt / 2, h_mid, v_mid)
-
-
-def _trapezoid_of_velocities(f, t, h, v, dt):
-    v_new = v + dt * f(t, h, v)
-    h_new = h + dt * (v + v_new) / 2
-    return h_new, v + dt / 2 * (f(t, h, v) + f(t, h_new, v_new))
-
-
-def _pushes(first, second, move=1.0):
-    def step(f, t, h, v, dt):
-        v = v + first * dt * f(t, h, v)
-        h = h + move * dt * v
-        return h, v + second * dt * f(t + dt, h, v)
-
-    return step
-
-
-def _second_push_halfway(f, t, h, v, dt):
-    half = v + dt / 2 * f(t, h, v)
-    return h + dt * half, half + dt / 2 * f(t + dt, h + dt / 2 * half, v)
-
-
-def _asks_in_another_order(f, t, h, v, dt):
-    v = v + dt / 2 * f(h, v, t)
-    h = h + dt * v
-    return h, v + dt / 2 * f(h, v, t + dt)
-
-
-def _asks_in_another_order_with_the_old_velocity(f, t, h, v, dt):
-    half = v + dt / 2 * f(h, v, t)
-    h = h + dt * half
-    return h, half + dt / 2 * f(h, v, t + dt)
-
-
-def _first_push_later(share):
-    def step(f, t, h, v, dt):
-        v = v + dt / 2 * f(t + share * dt, h, v)
-        h = h + dt * v
-        return h, v + dt / 2 * f(t + dt, h, v)
-
-    return step
-
-
-def _old_velocity(f, t, h, v, dt):
-    half = v + dt / 2 * f(t, h, v)
-    h = h + dt * v
-    return h, half + dt / 2 * f(t + dt, h, half)
-
-
-def _halved_move(f, t, h, v, dt):
-    h = h + dt / 2 * v
-    v = v + dt * f(t + dt / 2, h, v)
-    return h + dt / 2 * v, v
-
-
 # exercise: what was answered, and the name of the mistake if it has one
 WRONG = {
     "3.1": [
-        ((28.7, 1094), "step unchanged"),
         ((86.1, 365), "proportional to the step"),
         ((775, 40), "cube of the step"),
-        ((3.19, 9800), "finer for coarser"),
-        ((9.57, 3283), "a third"),
         ((0.26, 120), "in seconds"),
-        ((26, 120), "one period"),
-        ((260, 242), "whole period"),
-        ((258.3, 60.5), "quarter"),
         ((258.3, 19.3), "half a second"),
-        ((258.3, 12.1), "in tens"),
-        ((258.3, 2430), "in steps"),
-        ((258.3, 764), "in seconds"),
         ((258.3, 1094), "step unchanged"),
-        ((258.3, 0.1216), "milliseconds for seconds"),
+        ((..., 365), "proportional to the step"),
+        ((121.6, 258.3), "swapped"),
         ((287, 109), None),
         ((258.3, 125), None),
-        ((-258.3, 121), "wrong sign"),
-        ((121.6, 258.3), "swapped"),
         ((250, 125), None),
         ((258.3, float("inf")), None),
         (("258 ms", 121), None),
@@ -183,27 +58,9 @@ WRONG = {
     "3.2": [
         (symplectic_euler, "one whole push"),
         (explicit_euler, "explicit Euler"),
-        (_old_place, "old place"),
-        (_old_time, "old time"),
-        (_pushes(1, 1), "two whole pushes"),
-        (_pushes(0.5, 1), "second push whole"),
-        (_pushes(1, 0.5), "first push whole"),
-        (_pushes(0.5, 0), "no second push"),
-        (_pushes(0.5, 0.5, 0.5), "half a move"),
-        (_old_velocity, "old velocity"),
-        (_halved_move, "move in two halves"),
         (lambda *at: _verlet(*at)[::-1], "swapped"),
-        (_verlet_in_place, "changes its arguments"),
-        (_time_of_the_middle, "time of the middle"),
-        (_second_push_halfway, "place of the middle"),
-        (_asks_in_another_order, "order of arguments"),
-        (_asks_in_another_order_with_the_old_velocity, "order of arguments, old v"),
-        (_first_push_later(1), "first push at the end"),
-        (_first_push_later(0.5), "first push in the middle"),
-        (_explicit_midpoint, None),
-        (_trapezoid_of_velocities, "old time"),
-        (_pushes(-0.5, -0.5), None),
-        (_pushes(0.25, 0.25), None),
+        (lambda f, t, h, v, dt: _verlet(f, t, h.__iadd__(0.1) if np.ndim(h) else h, v, dt), "changes its arguments"),
+        (lambda f, t, h, v, dt: (h + dt * (v + dt / 4 * f(t, h, v)), v + dt / 2 * f(t, h, v)), None),
         (lambda f, t, h, v, dt: _verlet(f, t, h, v, dt)[0], None),
         (lambda f, t, h, v, dt: (h, v), None),
     ],
@@ -212,27 +69,18 @@ WRONG = {
         (lambda *at: np.sqrt(_by_a_square(*at)), "lengths"),
         (lambda *at: _by_a_square(*at) - 1, "growth only"),
         (lambda *at: _by_a_square(*at) ** 2, "squared"),
+        (lambda *at: 2 * _by_differences(*at), "twice the area"),
         (lambda *at: _by_a_square(*at, side=1.0), None),
         (lambda *at: _by_a_square(*at, side=0.1, centred=False), None),
-        (lambda *at: _by_a_square(*at, side=0.2, shifted=False), None),
-        (lambda *at: _by_a_square(*at, side=0.02, shifted=False), None),
         (lambda *at: _by_a_square(*at, side=0.005, shifted=False), None),
         (_corners_crossing, None),
-        (_by_a_shape_as_wide_as_x, None),
         (lambda *at: _by_a_square(*at, shifted=False), None),
-        (lambda *at: _by_a_square(*at, shifted=False, centred=False), None),
-        (lambda *at: _by_a_square(*at, side=1e-4, shifted=False), None),
         (lambda *at: _by_a_square(*at, side=1e-9, shifted=False), None),
         (lambda *at: _by_a_square(*at, side=1e-14), None),
-        (_energy_ratio, None),
-        (_by_a_shape_in_proportion, None),
         (lambda *at: _by_differences(*at, d=1e-8), None),
         (lambda step, f, x, v, dt: 1 + 5 * dt**2, None),
-        (lambda step, f, x, v, dt: 1.0, None),
         (lambda step, f, x, v, dt: _by_a_square(step, f, 0.0, 0.0, dt), None),
-        (lambda step, f, x, v, dt: _by_a_square(step, f, v, x, dt), None),
         (lambda step, f, x, v, dt: step(f, 0.0, x, v, dt), None),
-        (lambda step, f, x, v, dt: abs(x * v), None),
     ],
 }
 
@@ -240,7 +88,7 @@ RIGHT = {
     "3.1": [(258.3, 121.6), (260.2, 120.75), (np.float64(258.0), np.int64(121)), (np.array([262]), 120)],
     "3.2": [
         _verlet,
-        _verlet_as_an_array,
+        lambda *at: np.array(_verlet(*at)),
         lambda f, t, x, u, d: (
             x + d * (u + d / 2 * f(t, x, u)),
             u + d / 2 * f(t, x, 0) + d / 2 * f(t + d, x + d * (u + d / 2 * f(t, x, 0)), 0),
@@ -249,7 +97,6 @@ RIGHT = {
     "3.3": [
         _by_a_square,
         _by_differences,
-        _by_a_round_shape,
         lambda *at: _by_a_square(*at, side=0.001, centred=False),
         lambda *at: [_by_a_square(*at, side=1e-6)],
     ],

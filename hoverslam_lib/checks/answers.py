@@ -76,7 +76,9 @@ def distance(a, b, rtol, atol):
     if isinstance(a, Exception) or isinstance(b, Exception):
         return 0.0 if type(a) is type(b) and text_of(a) == text_of(b) else np.inf
     if _numeric(a) is None or _numeric(b) is None:
-        return 0.0 if type(a) is type(b) and a == b else np.inf
+        if isinstance(a, tuple | list) and isinstance(b, tuple | list) and len(a) == len(b):
+            return max((distance(*both, rtol, atol) for both in zip(a, b, strict=True)), default=0.0)
+        return 0.0 if type(a) is type(b) and np.array_equal(a, b) else np.inf
     a, b = _numeric(a), _numeric(b)
     if a.size == b.size == 1:
         a, b = a.reshape(()), b.reshape(())

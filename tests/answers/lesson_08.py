@@ -1,26 +1,21 @@
-"""Answers that students give to the exercises of lesson 8."""
+"""Answers that students give to the exercises of lesson 8, beside those that its table makes."""
 
 import math
 
 import numpy as np
 
-
-def _ratio(coarse, middle, fine):
-    return (coarse - middle) / (middle - fine)
-
-
-def _error(coarse, middle, fine):
-    return abs(middle - fine) / (_ratio(coarse, middle, fine) - 1)
+from hoverslam_lib import observed_order
+from hoverslam_lib.integrators import rk4
 
 
-def _judge(order=np.log2, error=_error):
-    return lambda *results: (order(_ratio(*results)), error(*results))
+def _judge(order=lambda a, b, c: np.log2((b - a) / (c - b)), power=2.0):
+    """By an order, and the error from it."""
 
+    def judge(a, b, c):
+        p = order(a, b, c)
+        return [p, abs(b - c) / (power**p - 1)]
 
-def _judge_by_differences(a, b, c):
-    change = np.abs(np.diff([a, b, c]))
-    p = (np.log(change[0]) - np.log(change[1])) / np.log(2)
-    return np.array([p, change[1] / (2**p - 1)])
+    return judge
 
 
 def _seen(theta, nodes, weights):
@@ -30,11 +25,9 @@ def _seen(theta, nodes, weights):
 def _tooth_of_a_step(theta, nodes, weights, a, dt):
     f = [a if place >= theta else 0.0 for place in nodes]
     v = dt * np.dot(weights, f)
+    if len(nodes) == 4 and nodes[1] == 0.5:
+        _, v = rk4(lambda t, h, v: a if t >= theta * dt else 0.0, 0.0, 0.0, 0.0, dt)
     return v - a * (dt - theta * dt)
-
-
-def _tooth_of_rk4(theta, nodes, weights, a, dt):
-    return (theta - 1 / 6 if theta <= 0.5 else theta - 5 / 6) * a * dt
 
 
 def _as_given(h, v, a, dt):
@@ -50,114 +43,53 @@ def _first_root(h, v, a):
     return (-v - math.sqrt(inside)) / a if inside >= 0 else None
 
 
-def _dip_missed(h, v, a, dt):
-    return None if h + v * dt + a * dt**2 / 2 > 0 else _first_root(h, v, a)
+def _within(root):
+    """What a formula for the first root makes of the step."""
+
+    def contact(h, v, a, dt):
+        s = root(h, v, a)
+        return s if s is not None and 0 < s <= dt else None
+
+    return contact
 
 
-def _later_root(h, v, a, dt):
-    inside = v**2 - 2 * a * h
-    if inside < 0 or a == 0:
-        return _first_root(h, v, a)
-    return next((s for s in ((-v + inside**0.5) / a, (-v - inside**0.5) / a) if 0 < s <= dt), None)
+def _without_a_question(h, v, a):
+    return -h / v if a == 0 and v else (-v - (v**2 - 2 * a * h) ** 0.5) / (a or 1)
 
 
-def _any_length(h, v, a, dt):
-    s = _first_root(h, v, a)
-    return s if s is not None and s > 0 else None
+def _by_math(h, v, a):
+    return -h / v if a == 0 else (-v - math.sqrt(v**2 - 2 * a * h)) / a
 
 
-def _even_before(h, v, a, dt):
-    s = _first_root(h, v, a)
-    return s if s is not None and s <= dt else None
-
-
-def _without_a_question(h, v, a, dt):
-    if a == 0:
-        return _first_root(h, v, a)
-    return (-v - (v**2 - 2 * a * h) ** 0.5) / a
-
-
-def _compares_with_complex(h, v, a, dt):
-    s = _without_a_question(h, v, a, dt)
-    return s if s <= dt else None
-
-
-def _divides_by_zero(h, v, a, dt):
-    inside = v**2 - 2 * a * h
-    if inside < 0:
-        return None
-    s = (-v - inside**0.5) / a
-    return s if 0 < s <= dt else None
-
-
-def _divides_by_numpys_zero(h, v, a, dt):
+def _divides_by_numpys_zero(h, v, a):
     with np.errstate(all="ignore"):
-        return _divides_by_zero(h, v, np.float64(a), dt)
+        return (-v - np.sqrt(max(v**2 - 2 * a * h, 0.0))) / np.float64(a) if v**2 >= 2 * a * h else None
 
 
-def _looks_after(theta, nodes, weights, a, dt, *, ignition):
-    return a * dt * (weights[nodes > ignition].sum() - (1 - theta))
-
-
-def _by_math(h, v, a, dt):
-    s = -h / v if a == 0 else (-v - math.sqrt(v**2 - 2 * a * h)) / a
-    return s if 0 < s <= dt else None
-
-
-def _without_the_half_or_the_end(h, v, a, dt):
+def _without_the_half(h, v, a):
     inside = v**2 - 4 * a * h
-    if inside < 0:
-        return None
-    s = (-v - inside**0.5) / (2 * a) if a else _first_root(h, v, a)
-    return s if s is not None and 0 < s <= dt else None
-
-
-def _by_an_eighth(h, v, a, dt):
-    s = (-v - (v**2 - 8 * a * h) ** 0.5) / (4 * a) if a else _first_root(h, v, a)
-    return s if 0 < s <= dt else None
-
-
-def _another_root(h, v, a, dt):
-    inside = v**2 - 4 * a * h
-    if inside < 0:
-        return None
-    return (-v + inside**0.5) / (2 * a) if a else _first_root(h, v, a)
+    return None if inside < 0 else (-v - inside**0.5) / (2 * a) if a else _first_root(h, v, a)
 
 
 def _smaller_root(h, v, a, dt):
-    if a == 0:
-        return _any_length(h, v, a, dt)
-    inside = v**2 - 2 * a * h
-    if inside < 0:
-        return None
-    s = min((-v - inside**0.5) / a, (-v + inside**0.5) / a)
+    if a == 0 or v**2 < 2 * a * h:
+        return _first_root(h, v, a)
+    root = (v**2 - 2 * a * h) ** 0.5
+    s = min((-v - root) / a, (-v + root) / a)
     return s if s <= dt else None
 
 
 def _sampled(h, v, a, dt):
-    for s in np.linspace(0, dt, 1001):
-        if h + v * s + a * s**2 / 2 <= 0:
-            return s
-    return None
+    return next((s for s in np.linspace(0, dt, 1001) if h + v * s + a * s**2 / 2 <= 0), None)
 
 
-def _straight_line(h, v, a, dt):
-    s = dt * h / -(v * dt + a * dt**2 / 2)
-    return s if s > 0 else None
-
-
-def _without_the_half(h, v, a, dt):
-    s = _first_root(h, v, 2 * a)
-    return s if s is not None and 0 < s <= dt else _first_root(h, v, a)
-
-
-def _at_rest(h, v, a, dt):
-    return -v / a if a else _first_root(h, v, a)
-
-
-def _by_formula(h, v, a, dt):
-    s = _first_root(h, v, a)
-    return None if s is None or s <= 0 or s > dt else s
+def _solved(h, v, a, dt, smallest=0, slowest=0):
+    """By the root of `inside`, if that is not too small, and the divisor is not, either."""
+    inside = v**2 - 2 * a * h
+    if inside < smallest:
+        return None
+    divisor = inside**0.5 - v
+    return 2 * h / divisor if divisor > slowest and 2 * h / divisor <= dt else None
 
 
 def _by_all_roots(h, v, a, dt):
@@ -166,7 +98,7 @@ def _by_all_roots(h, v, a, dt):
     return real[0] if real else None
 
 
-def _by_cases(h, v, a, dt):
+def _by_search(h, v, a, dt):
     lowest = min(dt, -v / a) if a > 0 > v else 0.0 if a > 0 else dt
     if h + v * lowest + a * lowest**2 / 2 > 0:
         return None
@@ -183,69 +115,42 @@ def _by_cases(h, v, a, dt):
 # exercise: what was answered, and the name of the mistake if it has one
 WRONG = {
     "8.1": [
-        (_judge(order=lambda r: r), "ratio"),
-        (_judge(order=math.log), "natural logarithm"),
-        (_judge(order=math.log10), "decimal logarithm"),
-        (_judge(order=lambda r: np.log2(1 / r)), "upside down"),
-        (_judge(order=math.sqrt), "root"),
-        (_judge(order=lambda r: round(np.log2(r))), "rounded"),
-        (_judge(order=lambda r: int(np.log2(r))), "rounded down"),
-        (_judge(error=lambda c, m, f: abs(c - m) / (_ratio(c, m, f) - 1)), "error of the middle run"),
-        (_judge(error=lambda c, m, f: abs(m - f)), "change"),
-        (_judge(error=lambda c, m, f: abs(m - f) / _ratio(c, m, f)), "divided by the ratio"),
-        (_judge(error=lambda c, m, f: abs(m - f) / 15), "order 4 always"),
-        (_judge(error=lambda c, m, f: -abs(m - f) / (_ratio(c, m, f) - 1)), "negative"),
-        (_judge(error=lambda c, m, f: abs(m - f) / (2 * _ratio(c, m, f) - 1)), "one power too many"),
-        (lambda c, m, f: _judge()(c, m, f)[::-1], "swapped"),
-        (lambda c, m, f: _judge()(c, m, f)[0], None),
-        (_judge(order=lambda r: 4.0), None),
-        (_judge(error=lambda c, m, f: (m - f) / (_ratio(c, m, f) - 1)), "negative"),
+        (_judge(lambda a, b, c: math.log((b - a) / (c - b))), "another logarithm"),
+        (_judge(lambda a, b, c: observed_order([0.4, 0.2, 0.1], [a, b, c])), "results for errors"),
+        (_judge(lambda a, b, c: math.log((b - a) / (c - b)) / math.log(4)), None),
+        (_judge(power=4.0), None),
+        (lambda a, b, c: _judge()(a, b, c)[0], None),
     ],
     "8.2": [
-        (lambda *x: -_tooth_of_a_step(*x), "exact minus computed"),
-        (lambda th, c, b, a, dt: a * dt * (_seen(th, c, b) - th), "time before ignition"),
         (lambda th, c, b, a, dt: a * dt * (1 - _seen(th, c, b) - (1 - th)), "looks that miss it"),
-        (lambda th, c, b, a, dt: a * dt * _seen(th, c, b), "only what is added"),
-        (lambda th, c, b, a, dt: a * dt * (np.mean(c > th) - (1 - th)), "looks counted"),
-        (lambda th, c, b, a, dt: a * (_seen(th, c, b) - (1 - th)), "dt missing"),
-        (lambda th, c, b, a, dt: dt * (_seen(th, c, b) - (1 - th)), "a missing"),
-        (lambda *x: _looks_after(*x, ignition=x[0] * x[4]), "theta as a time for the looks"),
-        (lambda *x: _looks_after(*x, ignition=x[0] / x[4]), None),
-        (lambda th, c, b, a, dt: a * (dt * _seen(th, c, b) - (dt - th)), "theta as a time"),
-        (_tooth_of_rk4, None),
         (lambda th, c, b, a, dt: a * dt * ((c > th) - (1 - th)), None),
-        (lambda th, c, b, a, dt: abs(_tooth_of_a_step(th, c, b, a, dt)), "sign lost"),
+        (lambda th, c, b, a, dt: -abs(_tooth_of_a_step(th, c, b, a, dt)), None),
     ],
     "8.3": [
         (_as_given, "the wrong root"),
-        (_dip_missed, "dip missed"),
-        (_later_root, "the wrong root"),
-        (_any_length, "after the step"),
-        (_even_before, "before the step"),
-        (_without_a_question, "no root"),
-        (_compares_with_complex, "no root"),
-        (_by_math, "no root"),
-        (_without_the_half_or_the_end, "half forgotten"),
-        (_another_root, None),
-        (_by_an_eighth, None),
-        (lambda h, v, a, dt: (-v - (v**2 - 8 * a * h) ** 0.5) / a, None),
-        (_smaller_root, "the wrong root"),
+        (lambda h, v, a, dt: _first_root(h, v, a), "after the step"),
+        (_within(_without_a_question), "no root"),
+        (lambda h, v, a, dt: _without_a_question(h, v, a), "no root"),
+        (_within(_by_math), "no root"),
+        (lambda *step: _solved(*step, smallest=-1e9), "no root"),
+        (_smaller_root, "the root before"),
+        (_within(_divides_by_numpys_zero), "a is 0"),
+        (_within(_without_the_half), "half forgotten"),
+        (lambda h, v, a, dt: -v / a if a else _first_root(h, v, a), "lowest point"),
+        (lambda h, v, a, dt: dt * h / -(v * dt + a * dt**2 / 2), "linear"),
         (_sampled, None),
-        (_divides_by_zero, None),
-        (_divides_by_numpys_zero, "a is 0"),
-        (_straight_line, "linear"),
-        (_without_the_half, "half forgotten"),
-        (_at_rest, "lowest point"),
-        (lambda h, v, a, dt: -_by_cases(h, v, a, dt), "negative"),
         (lambda h, v, a, dt: h + v * dt + a * dt**2 / 2 <= 0, None),
+        (lambda *step: _solved(*step, smallest=0.3), None),
+        (lambda *step: _solved(*step, smallest=-0.3), None),
+        (lambda *step: _solved(*step, slowest=0.5), None),
     ],
 }
 
 RIGHT = {
-    "8.1": [_judge(), _judge_by_differences],
+    "8.1": [_judge(), _judge(lambda a, b, c: observed_order([2, 1], np.abs(np.diff([a, b, c]))))],
     "8.2": [
         _tooth_of_a_step,
         lambda where, c, b, push, step: float(push * step * (b @ (c > where) - 1 + where)),
     ],
-    "8.3": [_by_cases, _by_all_roots, _by_formula],
+    "8.3": [_by_search, _by_all_roots, _within(_first_root), _solved],
 }

@@ -20,6 +20,8 @@ import pytest
 
 from hoverslam_lib import checks, course
 from hoverslam_lib.checks import feedback, judging, pages, record, stopping
+from hoverslam_lib.checks.answers import number as as_number
+from hoverslam_lib.checks.answers import repeatable
 from hoverslam_lib.checks.judging import Cases, Value
 
 OPEN = "○ not attempted yet"
@@ -279,17 +281,21 @@ def test_solutions_do_not_stand_in_a_check(number):
 # ---- whatever an answer does ----------------------------------------------------------------------------------------
 
 
+HINTS = ("general", "more concrete", "most concrete")
+
+
 def check_of(judge, tests=2):
-    return feedback.exercise("2.1", "a trial", tests=tests, hints=("general", "more concrete", "most concrete"))(judge)
+    return feedback.Exercise("2.1", "a trial", "trial", ("my_answer",), HINTS, feedback.Steps(judge, tests))
 
 
 @check_of
 def doubled(function):
-    from hoverslam_lib.checks.answers import compare, number, repeatable
-
     for x in (1.0, 3.0):
-        got = number(repeatable(function, x))
-        compare(got, 2 * x, f"for {x:g}", {"squared": (x**2, "You square; you should double.")})
+        got = as_number(repeatable(function, x))
+        if got == x**2:
+            raise feedback.Wrong("You square; you should double.", "squared")
+        if got != 2 * x:
+            raise feedback.Wrong(f"Not right for {x:g}: it gives {got:g}.", nudge=True)
         yield
 
 
@@ -503,9 +509,7 @@ def test_answer_that_changes_its_arguments_or_remembers_is_told():
 
     @check_of
     def summed(function):
-        from hoverslam_lib.checks.answers import compare, repeatable
-
-        compare(repeatable(function, np.ones(3)), 3.0, "for ones")
+        assert repeatable(function, np.ones(3)) == 3.0
         yield
         yield
 
@@ -638,7 +642,7 @@ def test_progress_is_kept_for_the_user_where_the_folder_cannot_be_written(tmp_pa
 def test_solutions_can_be_shown_or_withheld(tmp_path):
     for number in NUMBERS:
         assert "my_" in repr(checks.show_solution(number)), number
-    assert "lesson 2 has 2.1, 2.2, 2.3" in repr(checks.show_solution("2.7"))
+    assert "there are 2.1, 2.2, 2.3." in repr(checks.show_solution("2.7"))
     assert "there are 0.1, 1.1" in repr(checks.show_solution(99))
     (tmp_path / checks.WITHHELD).touch()
     assert "ask your instructor" in repr(checks.show_solution("2.1"))

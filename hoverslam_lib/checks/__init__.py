@@ -6,8 +6,7 @@ stand on pages of Markdown, one a lesson: ``lesson_02.md``.
 
 from pathlib import Path
 
-from hoverslam_lib.checks import pages, record
-from hoverslam_lib.checks.feedback import Exercise
+from hoverslam_lib.checks import pages
 from hoverslam_lib.checks.record import Page, done
 
 __all__ = ["ENTRIES", "EXERCISES", "progress", "show_solution"]
@@ -17,16 +16,11 @@ EXERCISES = {}
 WITHHELD = ".solutions_withheld"
 """A file of this name in a student's folder keeps solutions from being shown."""
 
-for _path in sorted({path.with_suffix(".md") for path in Path(__file__).parent.glob("lesson_*.*")}):
-    _module = pages.own_module(_path)
-    if _path.exists():
-        ENTRIES |= {entry.number: entry for entry in pages.entries(_path)}
-        _found = [entry.exercise(_module) for entry in ENTRIES.values() if entry.path == _path]
-    else:
-        _found = [check for check in vars(_module).values() if isinstance(check, Exercise)]
-    for _check in _found:
-        EXERCISES[_check.number] = globals()[_check.__name__] = _check
-        __all__.append(_check.__name__)
+for _path in sorted(Path(__file__).parent.glob("lesson_*.md")):
+    for _entry in pages.entries(_path):
+        ENTRIES[_entry.number] = _entry
+        EXERCISES[_entry.number] = globals()[_entry.name] = _entry.exercise(pages.own_module(_path))
+        __all__.append(_entry.name)
 
 
 def progress():
@@ -60,11 +54,8 @@ def show_solution(number):
     number = str(number)
     if Path(WITHHELD).exists():
         return Page(f"The solution to exercise {number} is withheld here: ask your instructor.")
-    if number in EXERCISES and number not in ENTRIES:
-        return Page(record.old_solution(number))
     if number not in ENTRIES:
-        lesson = number.partition(".")[0]
-        there = [known for known in EXERCISES if known.startswith(f"{lesson}.")] or list(EXERCISES)
-        where = f"lesson {lesson} has" if there[0].startswith(f"{lesson}.") else "there are"
-        return Page(f"There is no exercise {number}; {where} {', '.join(there)}.")
+        lesson = number.partition(".")[0] + "."
+        there = [known for known in ENTRIES if known.startswith(lesson)] or list(ENTRIES)
+        return Page(f"There is no exercise {number}; there are {', '.join(there)}.")
     return Page(ENTRIES[number].solution.strip())

@@ -37,40 +37,6 @@ def array(value, shape, name="the result"):
     return made
 
 
-def choice(value, options):
-    """One of a few words; capitals and spaces do not count."""
-    if not isinstance(value, str) or value.strip().lower() not in options:
-        raise Wrong(f"Answer with one of {', '.join(map(repr, options))}; it is {_shown(value)}.")
-    return value.strip().lower()
-
-
-def compare(got, right, where, mistakes=None, *, rtol=1e-9, atol=1e-12):
-    """Raise `Wrong` unless the answer is right.
-
-    Parameters
-    ----------
-    got, right : float, str or array_like
-    where : str
-        What was asked, for the student: "for dt = 0.1 s".
-    mistakes : dict, optional
-        Name of a mistake: (what it leads to, the hint that belongs to it). One is named only if the answer is its
-        result, and if its result can be told from the right one.
-    """
-    if _same(got, right, rtol, atol):
-        return
-    for mistake, (wrong, hint) in (mistakes or {}).items():
-        if _same(got, wrong, rtol, atol) and not _same(wrong, right, rtol, atol):
-            raise Wrong(hint, mistake)
-    raise Wrong(f"Not right {where}: it gives {digits(got)}.", nudge=True)
-
-
-def _same(a, b, rtol, atol):
-    if isinstance(a, str) or isinstance(b, str):
-        return a == b
-    a, b = np.asarray(a, dtype=float), np.asarray(b, dtype=float)
-    return a.shape == b.shape and np.allclose(a, b, rtol=rtol, atol=atol)
-
-
 def distance(a, b, rtol, atol):
     """How far a is from b, in units of the tolerance: at most 1 is near enough, inf is nothing alike."""
     if isinstance(a, Exception) or isinstance(b, Exception):

@@ -240,16 +240,6 @@ def _installed(filename):
 _ELSEWHERE = str(Path(__file__).parent.parent), inspect.getfile(inspect).removesuffix("inspect.py")
 
 
-def exercise(number, title, *, tests, hints):
-    """Make a check of a generator function: see `Steps`."""
-
-    def made(judge):
-        answers = tuple(inspect.signature(judge).parameters)
-        return Exercise(number, title, judge.__name__, answers, hints, Steps(judge, tests))
-
-    return made
-
-
 def _stub(): ...
 
 

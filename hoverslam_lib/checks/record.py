@@ -75,14 +75,3 @@ def add(number):
         except OSError:
             continue
         return
-
-
-def old_solution(number):
-    """Of a lesson that has no page yet."""
-    import re
-
-    path = (
-        Path(__file__).resolve().parents[2] / "notebooks/solutions" / f"lesson_{number.partition('.')[0].zfill(2)}.py"
-    )
-    parts = re.split(r"(?m)^# %% (\d+\.\d+)[^\n]*\n", path.read_text(encoding="utf-8"))
-    return dict(zip(parts[1::2], parts[2::2], strict=True))[number].strip()

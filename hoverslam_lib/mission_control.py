@@ -212,13 +212,17 @@ class MissionControl:
         slider.layout = Layout(flex="1 1 auto", width="auto")
         number.description, number.tooltip, number.layout = "", number.description, Layout(width="7.5em")
 
+        # each follows the other to another place only: browsers send places back, a bit beside
+        def apart():
+            return on_grid(slider.value, slider) != on_grid(number.value, slider)
+
         def typed(change):
-            slider.value = on_grid(change.new, slider)
+            if apart():
+                slider.value = on_grid(number.value, slider)
 
         def dragged(change):
-            place = on_grid(change.new, slider)
-            if place != on_grid(number.value, slider):  # else it is what was typed, sent back by the browser
-                number.value = place
+            if apart():
+                number.value = on_grid(slider.value, slider)
 
         number.observe(typed, "value")
         slider.observe(dragged, "value")

@@ -61,6 +61,7 @@ def test_ignition_is_dragged_on_the_sliders_grid_and_typed_as_it_is(page):
     number, slider = page.live.controls["t_ignite"], page.slider
     slider.value = 35.870000000000005
     assert number.value == 35.87
+    assert slider.value == 35.870000000000005, "nothing is sent to the handle under the hand"
     number.value = 60.211036
     assert slider.value == 60.21
     slider.value = 60.21  # a browser sends back where it put the handle, perhaps a bit beside

@@ -379,8 +379,7 @@ def test_saved_notebook_shows_its_stills_the_next_day_in_a_new_server(chromium, 
             page.goto(f"{address}/{path}/twice.ipynb?token={driver.TOKEN}")
             page.wait_for_function(driver.IDLE, timeout=60_000)
             check_stills(page, 3)
-            page.evaluate("() => window.jupyterapp.commands.execute('notebook:run-all-cells')")
-            page.locator(".widget-image").nth(2).wait_for()
+            assert driver.run_all(page)["errors"] == []
             assert len(figures(page)) == visible_pictures(page) == 3
             only_one_follows(page, 1)
             page.close()

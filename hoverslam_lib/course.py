@@ -107,6 +107,8 @@ def _clean(notebook):
             if "metadata" in output:
                 output["metadata"] = {}
             output.get("data", {}).pop("application/vnd.jupyter.widget-view+json", None)  # the still stays
+        if "outputs" in cell:
+            cell.outputs = [output for output in cell.outputs if output.get("data") != {}]
 
 
 def problems(path):

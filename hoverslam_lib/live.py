@@ -4,6 +4,7 @@ import html
 import io
 import math
 import zlib
+from decimal import Decimal
 
 import anywidget
 import matplotlib.pyplot as plt
@@ -11,7 +12,7 @@ import numpy as np
 import traitlets
 from IPython import get_ipython
 from IPython.display import display
-from ipywidgets import Image, Layout, VBox
+from ipywidgets import FloatLogSlider, FloatRangeSlider, FloatSlider, Image, Layout, VBox
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from PIL import Image as Pixels
 
@@ -19,6 +20,14 @@ from hoverslam_lib.descent import OUT_OF_PROPELLANT, SOFT_LANDING, SOFT_SPEED, S
 from hoverslam_lib.plotting import Picture, _png
 
 STILL = "Run this cell to make it live."
+_VIEW = "application/vnd.jupyter.widget-view+json"
+# The widget cannot be shown once its kernel is gone. So the still has an output of its own before the widget's, and of
+# the two one is seen: the widget where it lives, else the still. A dead widget is bare text, "model not found".
+_ONE_OF_TWO = """<style>
+.jp-OutputArea-child:has(.hoverslam-still):has(+ .jp-OutputArea-child .hoverslam-live),
+.jp-OutputArea-child:has(.hoverslam-still) + .jp-OutputArea-child > .jp-OutputArea-output:not(:has(*))
+{ display: none; }
+</style>"""
 
 LOW = 100.0
 """From hovers up to here [m] the fall is told: from much higher, the air would have its say."""
@@ -29,19 +38,55 @@ _SHOWN = {}  # by cell and run: so that a cell run again takes its former figure
 class Message(anywidget.AnyWidget):
     """The sentence above the picture, which screen readers speak when it changes.
 
-    It also gives the picture its alternative text and every slider the name that its label shows, because ipywidgets
-    gives neither.
+    It also gives the picture its alternative text and every control the name that its label shows, because ipywidgets
+    gives neither; and it says so when a control was moved and the kernel does not answer. A kernel that is busy is
+    waited for.
     """
 
     _esm = """
+    const WAIT = 1000;
     function name(el, text) {
         const figure = el.closest(".hoverslam-live");
         figure?.querySelector("img.widget-image")?.setAttribute("alt", text);
-        for (const control of figure?.querySelectorAll(".widget-slider") ?? []) {
-            const label = control.querySelector(".widget-label").innerText;
-            for (const part of control.querySelectorAll("[role=slider], .widget-readout"))
-                part.setAttribute("aria-label", label);
+        for (const control of figure?.querySelectorAll(".widget-slider, .widget-text") ?? []) {
+            const label = control.querySelector(".widget-label");
+            for (const part of control.querySelectorAll("[role=slider], .widget-readout, input"))
+                part.setAttribute("aria-label", label.innerText || label.title);
         }
+    }
+    // after a movement without a new sentence the kernel is asked for an answer
+    function watch(model, el, say) {
+        let timer = null;
+        const gone = () => {
+            const kernel = model.widget_manager.kernel;
+            if (kernel?.connectionStatus === "connected" && kernel.status === "busy") {
+                timer = setTimeout(gone, WAIT);
+                return;
+            }
+            timer = null;
+            const cure = document.body.dataset.voila ? "reload this page" : "run this cell again";
+            el.textContent = `The kernel is gone: ${cure}.`;
+        };
+        const ask = () => {
+            timer = setTimeout(gone, WAIT);
+            model.send("are you there?");
+        };
+        const moved = event => {
+            if (timer === null && el.closest(".hoverslam-live")?.contains(event.target)) timer = setTimeout(ask, WAIT);
+        };
+        const answered = () => {
+            clearTimeout(timer);
+            timer = null;
+            say();
+        };
+        model.on("change:text", answered);
+        model.on("msg:custom", answered);
+        const events = ["keydown", "pointerdown", "change"];
+        for (const event of events) document.addEventListener(event, moved, true);
+        return () => {
+            clearTimeout(timer);
+            for (const event of events) document.removeEventListener(event, moved, true);
+        };
     }
     export default {
         render({ model, el }) {
@@ -50,14 +95,18 @@ class Message(anywidget.AnyWidget):
                 el.textContent = model.get("text");
                 name(el, el.textContent);
             };
-            model.on("change:text", say);
             say();
             // the controls come onto the page one by one
             for (const wait of [0, 200, 1000, 3000]) setTimeout(say, wait);
+            return watch(model, el, say);
         },
     };
     """
     text = traitlets.Unicode().tag(sync=True)
+
+    def __init__(self):
+        super().__init__()
+        self.on_msg(lambda message, content, buffers: message.send(content))
 
 
 class Live:
@@ -72,9 +121,9 @@ class Live:
     fig : matplotlib.figure.Figure
         Made by ``plt.subplots`` as always; it is taken out of pyplot's hands.
     update : callable
-        ``update(**values)`` gets the value of every control by its name, moves the artists, and returns a sentence
-        that says with numbers what the picture shows. If it raises, the message is shown in place of the sentence,
-        and nothing that moves is drawn.
+        ``update(**values)`` gets the value of every control by its name, see `values`, moves the artists, and returns
+        a sentence that says with numbers what the picture shows. If it raises, the message is shown in place of the
+        sentence, and nothing that moves is drawn.
     **controls : ipywidgets.Widget
         Any with a value; ``description`` is its label and should have the unit.
     """
@@ -92,11 +141,20 @@ class Live:
         for control in controls.values():
             control.layout.width = control.layout.width or "34em"
             control.style.description_width = "11em"
-            control.tooltip = control.description
+            control.tooltip = control.tooltip or control.description
             control.observe(self._follow, "value")
         self.widget = VBox([*controls.values(), self.message, self.picture])
         self.widget.add_class("hoverslam-live")
         self._follow()
+
+    def values(self):
+        """The value of every control by its name; a slider's is the decimal number it stands for.
+
+        Browsers count a slider's steps in binary: 7.6 comes back from there as 7.6000000000000005, and one such bit
+        changes the first decimal of a published run. So a float slider's value is its place `on_grid`; of a
+        logarithmic slider that holds for the exponent.
+        """
+        return {name: _value(control) for name, control in self.controls.items()}
 
     def set(self, **values):
         """Give controls new values and draw once."""
@@ -111,12 +169,12 @@ class Live:
         self._follow()
 
     def show(self):
-        """Show the controls and the figure; what a notebook stores of them is a still picture."""
+        """Show the controls and the figure; where they cannot live, a still picture of them shows instead."""
         _close_former_run(self)
-        still = Picture(_png(self.fig), self.text, round(self.fig.bbox.width))
-        page = f"{still._repr_html_()}<p>{html.escape(self.text)} <em>{STILL}</em></p>"
-        view = self.widget._repr_mimebundle_()
-        display({**view, "text/html": page, "text/plain": self.text}, raw=True)
+        still = Picture(_png(self.fig), self.text, round(self.fig.bbox.width))._repr_html_()
+        page = f'<div class="hoverslam-still">{still}<p>{html.escape(self.text)} <em>{STILL}</em></p></div>'
+        display({"text/html": _ONE_OF_TWO + page, "text/plain": self.text}, raw=True)
+        display({_VIEW: self.widget._repr_mimebundle_()[_VIEW]}, raw=True)
 
     def close(self):
         """Take the controls and the picture out of the page and of memory."""
@@ -124,7 +182,7 @@ class Live:
 
     def _follow(self, change=None):
         try:
-            said = self.update(**{name: control.value for name, control in self.controls.items()})
+            said = self.update(**self.values())
             if not isinstance(said, str):
                 raise TypeError(f"update must return a sentence that says what the picture shows; it returned {said!r}")
         except Exception as error:  # whatever a student's own function raises is shown, and the controls stay usable
@@ -141,6 +199,29 @@ class Live:
     def say(self, text):
         """Put a sentence above the picture."""
         self.message.text = text
+
+
+def on_grid(value, slider):
+    """The place of a slider that is nearest to a value, as a decimal number.
+
+    Parameters
+    ----------
+    value : float
+    slider : ipywidgets.FloatSlider
+        Or any with `min`, `max` and `step`.
+
+    Returns
+    -------
+    float
+        min + k·step, rounded to as many decimals as these have, or max; the value itself if there is no step.
+    """
+    if not slider.step:
+        return value
+    value = min(max(value, slider.min), slider.max)
+    decimals = max(-Decimal(repr(number)).as_tuple().exponent for number in (slider.min, slider.step))
+    steps = round((value - slider.min) / slider.step)
+    place = round(slider.min + steps * slider.step, max(decimals, 0)) + 0.0  # no −0.0
+    return min(place, slider.max, key=lambda place: abs(place - value))
 
 
 def verdict(flight, height):
@@ -179,6 +260,16 @@ def verdict(flight, height):
 
 def _length(metres):
     return f"{metres / 1e3:.2f} km" if metres >= 999.5 else f"{metres:.3g} m"
+
+
+def _value(control):
+    if isinstance(control, FloatLogSlider):
+        return control.base ** on_grid(math.log(control.value, control.base), control)
+    if isinstance(control, FloatSlider):
+        return on_grid(control.value, control)
+    if isinstance(control, FloatRangeSlider):
+        return tuple(on_grid(end, control) for end in control.value)
+    return control.value
 
 
 def _encoded(pixels):

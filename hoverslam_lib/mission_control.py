@@ -14,6 +14,7 @@ from ipywidgets import (
     Checkbox,
     Dropdown,
     FloatSlider,
+    FloatText,
     GridBox,
     HBox,
     IntSlider,
@@ -32,7 +33,7 @@ from hoverslam_lib.booster import FALCON_9
 from hoverslam_lib.descent import Descent
 from hoverslam_lib.ignition import FreeFall, NoSoftLanding, best_ignition
 from hoverslam_lib.integrators import METHODS
-from hoverslam_lib.live import Live, verdict
+from hoverslam_lib.live import Live, on_grid, verdict
 from hoverslam_lib.planet import EARTH, MARS, MOON
 
 PLANETS = {"Earth": EARTH, "Mars": MARS, "Moon": MOON}
@@ -43,8 +44,7 @@ STEPS = [round(k * 10.0**n, 6) for n in (-3, -2, -1) for k in (1, 1.2, 1.5, 2, 2
 """Step sizes [s], about evenly spaced on a logarithmic scale; round, because the published numbers depend on it."""
 
 START = {
-    "coarse": 60.2,
-    "fine": 0.0,
+    "t_ignite": 60.2,
     "dt": 0.02,
     "methods": ("rk4",),
     "thrust": FALCON_9.thrust / 1e6,
@@ -53,6 +53,7 @@ START = {
     "faults": False,
     "moment": 100,
 }
+PAPERS_LANDING = START | {"t_ignite": 35.88, "dt": 0.02, "methods": ("rkn4",), "faults": True}
 
 # name of the axis, its limits, and what of a trial is drawn on it
 PANELS = (
@@ -144,8 +145,7 @@ class MissionControl:
         self.trials = []
         names = {method.title: key for key, method in METHODS.items()}
         controls = {
-            "coarse": FloatSlider(min=0, max=90, step=0.1, description="ignition [s]", readout_format=".1f"),
-            "fine": FloatSlider(min=-50, max=50, step=0.001, description="plus [ms]", readout_format=".3f"),
+            "t_ignite": FloatText(step=0.001, description="ignition [s]"),
             "dt": SelectionSlider(options=STEPS, description="step dt [s]"),
             "thrust": FloatSlider(min=0.2, max=15, step=0.1, description="thrust [MN]", readout_format=".1f"),
             "drag": FloatSlider(min=0, max=2, step=0.05, description="drag coefficient"),
@@ -157,6 +157,7 @@ class MissionControl:
         for name, control in controls.items():
             control.value = START[name]
             control.layout.width = "100%"
+        self.slider = self._slider(controls["t_ignite"])
         self.live = Live(self._figure(), self._fly, **controls)
         self.table, self.play = HTML(), Play(100, min=0, max=100, step=2, interval=120, layout=Layout(display="none"))
         jslink((self.play, "value"), (controls["moment"], "value"))
@@ -170,22 +171,25 @@ class MissionControl:
         """Put every control where it began."""
         self.live.set(**START)
 
+    def papers_landing(self, _=None):
+        """Set all that the paper's landing was computed with: its equation, its booster, its method and its numbers."""
+        self.live.set(**PAPERS_LANDING)
+
     def find(self, _=None):
         """Set the ignition to the optimum of the descent that is set, to the microsecond."""
         try:
-            best = best_ignition(self._descent(**self._values()))
+            best = best_ignition(self._descent(**self.live.values()))
         except (ValueError, ArithmeticError) as error:
             self.live.say(f"No soft landing: {error}")
             return
-        coarse = round(best.t_ignite, 1)
-        self.live.set(coarse=coarse, fine=round((best.t_ignite - coarse) * 1e3, 3), faults=False)
+        self.live.set(t_ignite=round(best.t_ignite, 6), faults=False)
 
     def keep(self, _=None):
         """Add what is shown to the table of trials."""
-        values = self._values()
+        values = self.live.values()
         for method in values["methods"]:
-            trial = try_out(self._descent(**values), _time(**values), values["dt"], method, values["faults"])
-            row = {"t_ignite [s]": round(_time(**values), 6), "dt [s]": values["dt"], "method": method}
+            trial = try_out(self._descent(**values), values["t_ignite"], values["dt"], method, values["faults"])
+            row = {"t_ignite [s]": values["t_ignite"], "dt [s]": values["dt"], "method": method}
             row |= {"thrust [MN]": values["thrust"], "drag coefficient": values["drag"], "planet": values["planet"]}
             row |= {"equation": "published" if values["faults"] else "right"}
             row |= {"hover height [m]": round(trial["height"], 4), "verdict": trial["verdict"]}
@@ -201,8 +205,28 @@ class MissionControl:
         """The trials that were kept, as a pandas DataFrame, the newest last."""
         return pd.DataFrame(self.trials)
 
-    def _values(self):
-        return {name: control.value for name, control in self.live.controls.items()}
+    def _slider(self, number):
+        """For dragging; the number beside it takes what is typed, as it is typed."""
+        slider = FloatSlider(number.value, min=0, max=90, step=0.01, description=number.description, readout=False)
+        slider.tooltip, slider.style.description_width = number.description, "11em"
+        slider.layout = Layout(flex="1 1 auto", width="auto")
+        number.description, number.tooltip, number.layout = "", number.description, Layout(width="7.5em")
+
+        # each follows the other to another place only: browsers send places back, a bit beside
+        def apart():
+            return on_grid(slider.value, slider) != on_grid(number.value, slider)
+
+        def typed(change):
+            if apart():
+                slider.value = on_grid(number.value, slider)
+
+        def dragged(change):
+            if apart():
+                number.value = on_grid(slider.value, slider)
+
+        number.observe(typed, "value")
+        slider.observe(dragged, "value")
+        return slider
 
     def _descent(self, thrust, drag, planet, **_):
         booster = replace(FALCON_9, thrust=1e6 * thrust, drag_coefficient=drag)
@@ -223,10 +247,10 @@ class MissionControl:
                 lines.append((before, after, now))
         return fig
 
-    def _fly(self, methods, dt, moment, faults, **values):
+    def _fly(self, t_ignite, methods, dt, moment, faults, **values):
         if not methods:
             raise ValueError("choose at least one method")
-        descent, t_ignite = self._descent(**values), _time(**values)
+        descent = self._descent(**values)
         said = []
         for method, lines in self.lines.items():
             trial = try_out(descent, t_ignite, dt, method, faults) if method in methods else None
@@ -239,6 +263,7 @@ class MissionControl:
         buttons = []
         for name, what, act in (
             ("Reset", "every control to where it began", self.reset),
+            ("The paper's landing", "set the published equation and the numbers of its landing", self.papers_landing),
             ("Find the optimum", "set the best ignition time", self.find),
             ("Keep this trial", "add it to the table", self.keep),
             ("Clear the table", "forget all trials", self.clear),
@@ -246,7 +271,8 @@ class MissionControl:
             button = Button(description=name, tooltip=what, layout=Layout(width="12em"))
             button.on_click(act)
             buttons.append(button)
-        left = VBox([controls[name] for name in ("coarse", "fine", "dt", "thrust", "drag")])
+        ignition = HBox([self.slider, controls["t_ignite"]])
+        left = VBox([ignition, *(controls[name] for name in ("dt", "thrust", "drag"))])
         play = ToggleButton(description="Play", tooltip="play or pause the flight", layout=Layout(width="6em"))
         jslink((play, "value"), (self.play, "playing"))  # Play's own buttons have no names
         moment = HBox([controls["moment"], play, self.play])
@@ -264,10 +290,6 @@ class MissionControl:
         data = base64.b64encode(frame.to_csv(index=False).encode("utf-8")).decode("ascii")
         link = f'<a download="trials.csv" href="data:text/csv;base64,{data}">Download the table as CSV</a>'
         self.table.value = f"{frame.to_html(index=False, border=0, na_rep='–')}<p>{link}</p>"
-
-
-def _time(coarse, fine, **_):
-    return max(coarse + fine / 1e3, 0.0)
 
 
 def _draw(lines, trial, share):

@@ -2,9 +2,11 @@
 
 import base64
 import io
+import sys
 from contextlib import contextmanager
 from pathlib import Path
 
+import matplotlib
 import matplotlib.pyplot as plt
 import numpy as np
 from PIL import Image
@@ -15,6 +17,22 @@ STYLE_SHEET = Path(__file__).with_name("hoverslam.mplstyle")
 
 EXACT = {"color": "0.72", "linewidth": 6, "linestyle": "-", "label": "exact"}
 """The exact solution: a broad grey band on which the others lie or do not."""
+
+# as its documentation gives them: there is no call for it
+_NUMPY_PRINTS = {
+    "edgeitems": 3,
+    "floatmode": "maxprec",
+    "formatter": None,
+    "infstr": "inf",
+    "legacy": False,
+    "linewidth": 75,
+    "nanstr": "nan",
+    "override_repr": None,
+    "precision": 8,
+    "sign": "-",
+    "suppress": False,
+    "threshold": 1000,
+}
 
 _LINES = {
     "explicit_euler": ("#D55E00", "--"),
@@ -28,8 +46,16 @@ _LINES = {
 
 
 def use_style():
-    """Draw in the course's style from here on."""
+    """Draw in the course's style from here on, and print numbers as NumPy and pandas do by default.
+
+    Whatever a matplotlibrc or a start-up file of the user's own has set before is undone, but for matplotlib's backend,
+    so that the same page comes out everywhere.
+    """
+    matplotlib.rcdefaults()
     plt.style.use(STYLE_SHEET)
+    np.set_printoptions(**_NUMPY_PRINTS)
+    if "pandas" in sys.modules:  # else there is nothing to undo
+        sys.modules["pandas"].reset_option("^display")
 
 
 def line(method, **changes):

@@ -7,17 +7,28 @@ import math
 import os
 import sys
 from dataclasses import replace
+from decimal import Decimal
 
 import matplotlib.pyplot as plt
 import nbformat
 import numpy as np
 import pytest
-from ipywidgets import Checkbox, Dropdown, FloatLogSlider, FloatSlider, IntSlider, SelectionSlider, SelectMultiple
+from ipywidgets import (
+    Checkbox,
+    Dropdown,
+    FloatLogSlider,
+    FloatRangeSlider,
+    FloatSlider,
+    FloatText,
+    IntSlider,
+    SelectionSlider,
+    SelectMultiple,
+)
 from PIL import Image
 from scipy.optimize import brentq
 
-from hoverslam_lib import FALCON_9, Descent, FreeFall, course, fly, live
-from hoverslam_lib.live import Live, verdict
+from hoverslam_lib import FALCON_9, Descent, FreeFall, course, fly, live, published
+from hoverslam_lib.live import Live, on_grid, verdict
 
 POSITIONS = int(os.environ.get("LIVE_POSITIONS", "100"))
 NOTEBOOKS = [path for path in course.lessons() if "Live(" in path.read_text() or "MissionControl" in path.read_text()]
@@ -114,13 +125,95 @@ def test_set_draws_once(dot, monkeypatch):
     assert len(pictures) == 2, "controls are followed again"
 
 
-def test_page_holds_the_widget_and_a_still_with_its_numbers(dot, shown):
+def test_page_holds_a_still_with_its_numbers_and_the_widget_in_an_output_of_its_own(dot, shown):
     dot.show()
-    (bundle,) = shown
-    assert "application/vnd.jupyter.widget-view+json" in bundle
-    assert 'alt="the dot is at 5.0, 5.0"' in bundle["text/html"]
-    assert live.STILL in bundle["text/html"]
-    assert bundle["text/plain"] == dot.text
+    still, widget = shown
+    assert 'alt="the dot is at 5.0, 5.0"' in still["text/html"]
+    assert live.STILL in still["text/html"]
+    assert still["text/plain"] == dot.text
+    assert list(still) == ["text/html", "text/plain"]
+    assert list(widget) == ["application/vnd.jupyter.widget-view+json"], "nothing that is compared or read aloud twice"
+
+
+def test_stored_lesson_keeps_the_still_and_no_widget(dot, shown):
+    dot.show()
+    outputs = [nbformat.v4.new_output("display_data", data=dict(bundle)) for bundle in shown]
+    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell("dot.show()", outputs=outputs)])
+    course._clean(notebook)
+    (kept,) = notebook.cells[0].outputs
+    assert live.STILL in kept.data["text/html"]
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_every_stored_live_figure_is_one_still_that_gives_way_to_the_widget(path):
+    cells = [cell for cell in nbformat.read(path, as_version=4).cells if cell.cell_type == "code"]
+    stills = [output.data["text/html"] for cell in cells for output in cell.outputs if live.STILL in str(output)]
+    assert len(stills) == sum(cell.source.count(".show()") for cell in cells)
+    for still in stills:
+        assert still.startswith(f'{live._ONE_OF_TWO}<div class="hoverslam-still"><img alt="')
+
+
+# ---- what a browser sends -------------------------------------------------------------------------------------------
+
+
+SLIDERS = (
+    ("0.5", "34", "0.01"),
+    ("0.02", "2.1", "0.01"),
+    ("0.2", "15", "0.1"),
+    ("0", "90", "0.01"),
+    ("-2500", "2500", "1"),
+)
+
+
+@pytest.mark.parametrize(("low", "high", "step"), SLIDERS)
+def test_every_place_of_a_slider_is_its_decimal_number_whatever_bit_a_browser_adds(low, high, step):
+    slider = FloatSlider(min=float(low), max=float(high), step=float(step))
+    for k in range(int((Decimal(high) - Decimal(low)) / Decimal(step)) + 1):
+        exact = float(Decimal(low) + k * Decimal(step))
+        counted = float(low) + k * float(step)
+        for sent in (exact, counted, math.nextafter(exact, math.inf), math.nextafter(exact, -math.inf)):
+            assert on_grid(sent, slider) == exact
+
+
+def test_places_that_are_not_whole_steps():
+    slider = FloatSlider(min=0, max=1, step=0.3)
+    assert [on_grid(value, slider) for value in (0.94, 0.96, 1.0, 1.3, -2.0)] == [0.9, 1.0, 1.0, 1.0, 0.0]
+    assert math.copysign(1, on_grid(-1e-17, FloatSlider(min=-0.3, max=0.3, step=0.1))) == 1
+    assert on_grid(0.1234567, FloatSlider(min=0, max=1, step=None)) == 0.1234567
+
+
+def test_update_gets_what_the_controls_stand_for():
+    got = []
+    fig, _ = plt.subplots()
+    controls = {
+        "t": FloatSlider(35.88, min=0, max=90, step=0.01),
+        "dt": FloatLogSlider(0.1, min=-2.5, max=0, step=0.02),
+        "between": FloatRangeSlider(value=(1, 2), min=0, max=9, step=0.1),
+        "typed": FloatText(35.88),
+        "n": IntSlider(3),
+        "key": SelectionSlider(options=[0.1, 0.02], value=0.02),
+    }
+    made = Live(fig, lambda **values: got.append(values) or "text 1", **controls)
+    made.set(
+        t=35.879999999999995, dt=0.010000000000000002, between=(0.30000000000000004, 7.6000000000000005), typed=1 / 3
+    )
+    assert got[-1] == {"t": 35.88, "dt": 0.01, "between": (0.3, 7.6), "typed": 1 / 3, "n": 3, "key": 0.02}
+    assert made.values() == got[-1]
+    made.close()
+
+
+def test_paper_lands_where_a_browser_sends_its_ignition_time_back():
+    """One bit beside 35.88 is another run of the published program."""
+    slider = FloatSlider(35.879999999999995, min=30, max=66, step=0.01)
+    assert published.fly(slider.value, dt=0.02).v.max() != published.fly(35.88, dt=0.02).v.max()
+    assert published.fly(on_grid(slider.value, slider), dt=0.02).v.max() == published.fly(35.88, dt=0.02).v.max()
+
+
+def test_kernel_answers_when_it_is_asked_whether_it_is_there(dot, monkeypatch):
+    sent = []
+    monkeypatch.setattr(dot.message, "send", sent.append)
+    dot.message._handle_custom_msg("are you there?", [])
+    assert len(sent) == 1
 
 
 def test_controls_have_labels_that_are_not_cut(dot):
@@ -213,6 +306,8 @@ def range_of(control):
         return [low, high], lambda rng: float(np.exp(rng.uniform(np.log(low), np.log(high))))
     if isinstance(control, FloatSlider):
         return [control.min, control.max], lambda rng: float(rng.uniform(control.min, control.max))
+    if isinstance(control, FloatText):
+        return [0.0, 90.0], lambda rng: float(rng.uniform(0, 90))
     if isinstance(control, IntSlider):
         return [control.min, control.max], lambda rng: int(rng.integers(control.min, control.max + 1))
     if isinstance(control, Checkbox):

@@ -29,7 +29,7 @@ def _reset(page):
 
 
 def test_reset_puts_every_control_back(page):
-    page.live.set(coarse=10.0, fine=3.0, planet="Moon", methods=("dop8", "rk4"), thrust=2.0)
+    page.live.set(t_ignite=10.003, planet="Moon", methods=("dop8", "rk4"), thrust=2.0)
     page.reset()
     assert {name: control.value for name, control in page.live.controls.items()} == START
 
@@ -39,17 +39,57 @@ def test_optimum_is_found_to_the_microsecond_for_the_descent_that_is_set(page):
     assert "soft landing" in page.live.text
     page.live.set(planet="Mars", thrust=9.0, drag=1.0)
     page.find()
-    descent = page._descent(**page._values())
-    t = page.live.controls["coarse"].value + page.live.controls["fine"].value / 1e3
+    descent = page._descent(**page.live.values())
+    t = page.live.controls["t_ignite"].value
     assert t == pytest.approx(best_ignition(descent).t_ignite, abs=1e-6)
     assert abs(hover_height(descent, t)) < 0.01
+
+
+def test_papers_landing_on_one_click_whatever_was_set_and_a_browser_sends_back(page):
+    page.live.set(t_ignite=1.0, planet="Moon", drag=1.0, thrust=9.0, moment=3)
+    page.papers_landing()
+    landing = page.live.text
+    assert "comes to 0 m/s 2.6 m above the ground" in landing
+    page.slider.value = 35.879999999999995
+    page.live.controls["thrust"].value = 7.6000000000000005
+    assert page.live.text == landing
+    page.live.controls["drag"].value = 0.55
+    assert "press Reset" in page.live.text
+
+
+def test_ignition_is_dragged_on_the_sliders_grid_and_typed_as_it_is(page):
+    number, slider = page.live.controls["t_ignite"], page.slider
+    slider.value = 35.870000000000005
+    assert number.value == 35.87
+    assert slider.value == 35.870000000000005, "nothing is sent to the handle under the hand"
+    number.value = 60.211036
+    assert slider.value == 60.21
+    slider.value = 60.21  # a browser sends back where it put the handle, perhaps a bit beside
+    slider.value = 60.20999999999999
+    assert number.value == 60.211036
+    slider.value = 60.22
+    slider.value = 60.21
+    assert number.value == 60.21
+    number.value = 95.5
+    assert slider.value == slider.max
+    assert "Ignition at 95.500000 s" in page.live.text
+    number.value = -1.0
+    assert page.live.text == "Not possible: t_ignite must be a finite number at least 0 [s]; got -1.0"
+
+
+def test_dragging_draws_once_a_movement(page):
+    pictures = []
+    page.live.picture.observe(lambda change: pictures.append(change), "value")
+    page.slider.value = 58.33
+    page.live.controls["t_ignite"].value = 57.123456
+    assert len(pictures) == 2
 
 
 def test_no_soft_landing_is_explained_and_changes_nothing(page):
     page.live.set(thrust=0.2)
     page.find()
     assert "No soft landing: thrust must exceed" in page.live.message.text
-    assert page.live.controls["coarse"].value == START["coarse"]
+    assert page.live.controls["t_ignite"].value == START["t_ignite"]
 
 
 def test_trial_is_what_fly_says():
@@ -83,7 +123,7 @@ def test_published_equation_on_another_planet_says_what_to_do(page):
 
 def test_trials_are_kept_listed_and_given_as_csv(page):
     page.keep()
-    page.live.set(coarse=60.3, methods=("rk4", "dop8"))
+    page.live.set(t_ignite=60.3, methods=("rk4", "dop8"))
     page.keep()
     frame = page.to_frame()
     assert list(frame["method"]) == ["rk4", "rk4", "dop8"]

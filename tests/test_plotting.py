@@ -2,14 +2,19 @@
 
 import io
 import math
+import os
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
 import pytest
 from PIL import Image
 
-from hoverslam_lib import METHODS, plotting
+from hoverslam_lib import METHODS, course, plotting
 
 
 @pytest.fixture
@@ -82,3 +87,85 @@ def test_figure_that_fails_is_not_shown_and_not_kept(shown):
         math.exp(1000)
     assert shown == []
     assert plt.get_fignums() == []
+
+
+# ---- the user's own settings ----------------------------------------------------------------------------------------
+
+HOSTILE = """
+text.usetex: True
+figure.autolayout: True
+figure.dpi: 40
+savefig.dpi: 30
+savefig.bbox: tight
+savefig.transparent: True
+savefig.facecolor: black
+font.family: serif
+font.size: 20
+axes.facecolor: yellow
+axes.formatter.use_locale: True
+axes.xmargin: 0.4
+lines.linewidth: 7
+lines.antialiased: False
+path.simplify: False
+xtick.direction: in
+"""
+START_UP = """
+import numpy as np, pandas as pd
+np.set_printoptions(precision=2, suppress=True, sign="+", linewidth=20)
+pd.set_option("display.precision", 2, "display.max_rows", 3, "display.max_columns", 2)
+"""
+PAGE = """
+import base64, sys, nbformat
+import IPython.display
+from hoverslam_lib import live
+
+def show(*what, raw=False):
+    for each in what:
+        if raw:
+            print(each.get("text/html"))
+        else:
+            print(each._repr_html_() if hasattr(each, "_repr_html_") else repr(each))
+
+IPython.display.display = live.display = show
+live.Live.show = lambda self, show=live.Live.show: (show(self), print(base64.b64encode(self.picture.value)))
+namespace = {"display": show, "__name__": "__main__"}
+for cell in nbformat.read(sys.argv[1], as_version=4).cells:
+    if cell.cell_type == "code":
+        exec(compile(cell.source, "cell", "exec"), namespace)
+"""
+
+
+def page(lesson, start_up, folder, **settings):
+    """All that the cells of a lesson show and print, pictures included."""
+    (path,) = course.lessons([lesson])
+    ran = subprocess.run(
+        [sys.executable, "-c", start_up + PAGE, path],
+        env=os.environ | {"MPLBACKEND": "agg"} | settings,
+        cwd=folder,
+        capture_output=True,
+        text=True,
+    )
+    assert ran.returncode == 0, ran.stderr
+    return ran.stdout
+
+
+@pytest.mark.parametrize("lesson", ["02", "06"])
+def test_lesson_is_the_same_to_the_pixel_whatever_the_users_own_settings(lesson, tmp_path):
+    hostile = tmp_path / "matplotlibrc"
+    hostile.write_text(HOSTILE, encoding="utf-8")
+    ours = page(lesson, "", tmp_path)
+    assert ours.count("data:image/png;base64,") > 2
+    theirs = page(lesson, START_UP, tmp_path, MATPLOTLIBRC=str(hostile))
+    assert [a for a, b in zip(ours.splitlines(), theirs.splitlines(), strict=True) if a != b] == []
+
+
+def test_style_leaves_the_backend_alone_and_undoes_what_changes_printed_numbers():
+    before, printing = plt.get_backend(), np.get_printoptions()
+    with plt.rc_context({"font.size": 30, "figure.autolayout": True}), pd.option_context("display.precision", 2):
+        np.set_printoptions(precision=2, suppress=True)
+        plotting.use_style()
+        assert plt.get_backend() == before
+        assert plt.rcParams["font.size"] == 11
+        assert not plt.rcParams["figure.autolayout"]
+        assert np.get_printoptions() == printing
+        assert pd.get_option("display.precision") == 6

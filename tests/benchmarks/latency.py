@@ -111,7 +111,7 @@ WATCH = """() => {
         document.addEventListener(kind, event => { if (event.buttons) seen.moved = event.timeStamp; }, true);
     const look = () => {
         const images = [...document.querySelectorAll(`${outputs} img`)];
-        const there = images.some(image => image.complete && image.naturalWidth > 0);
+        const there = images.some(image => image.complete && image.naturalWidth > 0 && image.checkVisibility());
         seen.frames += 1;
         seen.empty += !there && !document.querySelector(`${outputs} canvas`);
         requestAnimationFrame(look);

@@ -20,6 +20,7 @@ FLAGS = [
     "--disable-component-update",
     "--disable-sync",
 ]
+JUPYTER = ["--allow-root", "--ServerApp.root_dir=."]
 TOKEN = "a-token-for-the-tests"
 SETTINGS = {
     "@jupyterlab/apputils-extension:notification": {"fetchNews": "false", "checkForUpdates": False},
@@ -27,9 +28,10 @@ SETTINGS = {
     "@jupyterlab/docmanager-extension:plugin": {"autosave": False},
 }
 IDLE = """() => {
-    const session = window.jupyterapp.shell.currentWidget?.sessionContext?.session;
+    const session = window.jupyterapp?.shell.currentWidget?.sessionContext?.session;
     return session?.kernel?.connectionStatus === 'connected' && session.kernel.status === 'idle';
 }"""
+SAVE = "async () => await window.jupyterapp.commands.execute('docmanager:save')"
 CLOSE = """async () => {
     const notebook = window.jupyterapp.shell.currentWidget;
     await notebook.sessionContext.shutdown();
@@ -73,7 +75,10 @@ def browser():
 
 @contextlib.contextmanager
 def server(application, folder, config):
-    """``jupyter lab`` or ``voila`` on a folder of notebooks, with a configuration of its own; yields its address."""
+    """JupyterLab ("lab"), Notebook 7 ("notebook") or Voilà ("voila") on a folder of notebooks; yields its address.
+
+    Each has a configuration of its own.
+    """
     config = Path(config)
     (config / "labconfig").mkdir(parents=True, exist_ok=True)
     (config / "labconfig" / "default_setting_overrides.json").write_text(json.dumps(SETTINGS))
@@ -81,7 +86,8 @@ def server(application, folder, config):
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
     commands = {
-        "lab": ["jupyterlab", "--allow-root", "--ServerApp.root_dir=.", "--LabApp.expose_app_in_browser=True"],
+        "lab": ["jupyterlab", *JUPYTER, "--LabApp.expose_app_in_browser=True"],
+        "notebook": ["notebook", *JUPYTER, "--JupyterNotebookApp.expose_app_in_browser=True"],
         "voila": ["voila", "--Voila.ip=127.0.0.1", "."],
     }
     here = {"JUPYTER_CONFIG_DIR": config, "JUPYTERLAB_SETTINGS_DIR": config / "s", "JUPYTERLAB_WORKSPACES_DIR": config}
@@ -117,8 +123,13 @@ def open_notebook(page, name):
     page.wait_for_function(IDLE, timeout=60_000)
 
 
+def save_notebook(page):
+    """Save the notebook with its outputs."""
+    page.evaluate(SAVE)
+
+
 def close_notebook(page):
-    """End the kernel and close the notebook, unsaved."""
+    """End the kernel and close the notebook, without saving it."""
     page.evaluate(CLOSE)
 
 

@@ -68,7 +68,12 @@ RUN_CELL = """async n => {
     window.jupyterapp.shell.currentWidget.content.activeCellIndex = n;
     await window.jupyterapp.commands.execute('notebook:run-cell');
 }"""
+SHUT_DOWN = "() => window.jupyterapp.shell.currentWidget.sessionContext.shutdown()"
 NAME = "() => window.jupyterapp.shell.currentWidget.context.path.replace('.ipynb', '')"
+BUSY = """seconds => {
+    const kernel = window.jupyterapp.shell.currentWidget.sessionContext.session.kernel;
+    kernel.requestExecute({code: `time.sleep(${seconds})`, silent: true});
+}"""
 RESTART = "() => window.jupyterapp.shell.currentWidget.sessionContext.restartKernel()"
 VISIBLE = """selector => {
     window.controls = [...document.querySelectorAll(selector)].filter(control => control.checkVisibility());
@@ -76,7 +81,7 @@ VISIBLE = """selector => {
 }"""
 FOCUS = """() => {
     const at = document.activeElement, widget = at.closest('.jupyter-widgets');
-    const label = widget?.querySelector('.widget-label')?.innerText || at.innerText || '';
+    const label = widget?.querySelector('.widget-label')?.innerText || at.ariaLabel || at.innerText || '';
     return {label: label.trim(), number: window.controls.indexOf(at)};
 }"""
 WIDGETS = "len(__import__('ipywidgets').widgets.widget._instances)"
@@ -178,6 +183,48 @@ def figures(page):
     return [Figure(place) for place in places.all()]
 
 
+def check_stills(page, number):
+    """What a reader sees where no widget lives: the still pictures, with their numbers and how to revive them."""
+    page.locator(".hoverslam-still").first.wait_for()
+    page.wait_for_timeout(1500)  # the front end's time to look for the widgets
+    assert page.locator(".hoverslam-live").count() == 0
+    stills = page.locator(".hoverslam-still")
+    assert stills.count() == number
+    for still in stills.all():
+        assert still.is_visible()
+        assert still.inner_text().endswith(STILL)
+        picture = still.locator("img")
+        assert picture.evaluate("image => image.checkVisibility() && image.naturalWidth > 0")
+        assert re.search(r"\d", picture.get_attribute("alt"))
+        assert picture.get_attribute("alt") in still.inner_text()
+    for notice in page.get_by_text(re.compile("model not found|Loading widget", re.IGNORECASE)).all():
+        assert not notice.is_visible()
+
+
+def check_papers_landing(page):
+    """One click on a fresh page shows it; then the published equation follows keys, the mouse and what is typed."""
+    (figure,) = figures(page)
+    page.get_by_role("button", name="The paper's landing").click()
+    landing = "comes to 0 m/s 2.6 m above the ground. Ignition at 35.880000 s, dt = 0.02 s."
+    said = "([figure, text]) => figure.querySelector('[role=status]').innerText.endsWith(text)"
+    figure.wait(said, landing)
+    assert page.get_by_role("spinbutton", name="ignition [s]").input_value() == "35.88"
+    move_slider(figure, 0, said=False)
+    figure.wait(said, landing)
+    for n in (2, 3):  # another thrust or drag is refused, and the paper's comes back
+        figure.there_and_back(
+            lambda n=n: press(page, figure.slider(n), "ArrowRight"),
+            lambda n=n: press(page, figure.slider(n), "ArrowLeft"),
+        )
+    crash = "largest velocity -52.9 m/s. Ignition at 35.882000 s, dt = 0.02 s."
+    for typed, end in {"35.882": crash, "35.88": landing}.items():
+        number = page.get_by_role("spinbutton", name="ignition [s]")
+        number.fill(typed)
+        number.press("Enter")
+        figure.wait(said, end)
+        assert number.input_value() == typed
+
+
 def press(page, control, key, times=2):
     control.focus()
     for _ in range(times):
@@ -259,6 +306,11 @@ def test_notebook_shows_a_still_before_it_is_run_and_follows_every_control_after
     for control in figure.where.locator("input[type=checkbox], select").all():
         move_other(figure, control)
     assert lesson.evaluate(driver.OUTPUTS)["errors"] == []
+    assert visible_pictures(lesson) == 1
+    driver.save_notebook(lesson)
+    driver.close_notebook(lesson)
+    driver.open_notebook(lesson, f"{name}.ipynb")  # the next day
+    check_stills(lesson, 1)
 
 
 @pytest.mark.parametrize("scratch", ["twice"], indirect=True)
@@ -270,7 +322,7 @@ def test_figures_do_not_disturb_each_other_and_a_cell_run_again_leaves_nothing_b
     for cell in (1, 2):
         scratch.evaluate(RUN_CELL, cell)
     assert len(figures(scratch)) == 3
-    assert scratch.locator(".jp-OutputArea-output img").count() == 3
+    assert visible_pictures(scratch) == 3
     assert scratch.locator(".noUi-handle").count() == 3
     assert scratch.evaluate(ASK, WIDGETS) == widgets
     only_one_follows(scratch, 0)
@@ -284,8 +336,60 @@ def test_figure_works_after_a_restart_and_former_ones_stay_as_they_were(scratch)
     press(scratch, figures(scratch)[1].slider(), "ArrowRight")
     scratch.evaluate(RUN_CELL, 0)
     scratch.evaluate(RUN_CELL, 1)
-    assert [figure.state() for figure in figures(scratch)[1:]] == before[1:]
+    status = figures(scratch)[1].where.locator("[role=status]")
+    status.filter(has_text="The kernel is gone: run this cell again.").wait_for(timeout=4000)
+    after = [figure.state() for figure in figures(scratch)]
+    assert after[1]["picture"] == before[1]["picture"]
+    assert after[2] == before[2]
     only_one_follows(scratch, 0)
+
+
+@pytest.mark.parametrize("scratch", ["slow"], indirect=True)
+def test_figure_whose_kernel_is_gone_says_so_when_it_is_moved_and_one_that_is_busy_does_not(scratch):
+    (figure,) = figures(scratch)
+    status = figure.where.locator("[role=status]")
+    scratch.evaluate(BUSY, 4)
+    press(scratch, figure.slider(), "ArrowRight")
+    scratch.wait_for_timeout(3000)
+    assert "gone" not in status.inner_text()
+    figure.wait(AGREES, 0, timeout=5000)
+    press(scratch, figure.slider(), "Home")
+    figure.wait(AGREES, 0)
+    press(scratch, figure.slider(), "Home")  # nothing changes, but the kernel answers
+    scratch.wait_for_timeout(3000)
+    assert "gone" not in status.inner_text()
+    scratch.evaluate(SHUT_DOWN)
+    press(scratch, figure.slider(), "ArrowRight")
+    status.filter(has_text="The kernel is gone: run this cell again.").wait_for(timeout=4000)
+
+
+def test_saved_notebook_shows_its_stills_the_next_day_in_a_new_server(chromium, folder):
+    for application in ("lab", "notebook"):
+        with driver.server("lab", folder, tempfile.mkdtemp(dir=folder.parent)) as address:
+            page = chromium.new_page(viewport={"width": 1280, "height": 1000})
+            driver.open_lab(page, address)
+            driver.open_notebook(page, "twice.ipynb")
+            assert driver.run_all(page)["errors"] == []
+            assert len(figures(page)) == visible_pictures(page) == 3
+            driver.save_notebook(page)
+            page.close()
+        with driver.server(application, folder, tempfile.mkdtemp(dir=folder.parent)) as address:
+            page = chromium.new_page(viewport={"width": 1280, "height": 1000})
+            path = {"lab": "lab/tree", "notebook": "notebooks"}[application]
+            page.goto(f"{address}/{path}/twice.ipynb?token={driver.TOKEN}")
+            page.wait_for_function(driver.IDLE, timeout=60_000)
+            check_stills(page, 3)
+            assert driver.run_all(page)["errors"] == []
+            assert len(figures(page)) == visible_pictures(page) == 3
+            figure = figures(page)[1]
+            before = figure.state()["text"]
+            drag(page, figure.slider(), range(2, 42, 2))  # Notebook 7 takes arrow keys for its own
+            figure.wait(CHANGED, "text", before)
+            page.close()
+
+
+def visible_pictures(page):
+    return page.locator(".jp-OutputArea-output:has(.hoverslam-live) img:visible, .hoverslam-still img:visible").count()
 
 
 def only_one_follows(page, n):
@@ -312,11 +416,24 @@ def test_newest_movement_wins(scratch):
     assert figure.state() == last
 
 
+@pytest.mark.parametrize("lesson", ["mission_control"], indirect=True)
+def test_papers_landing_on_one_click_in_jupyterlab(lesson):
+    assert driver.run_all(lesson)["errors"] == []
+    check_papers_landing(lesson)
+
+
+def test_papers_landing_on_one_click_as_a_page(mission):
+    check_papers_landing(mission)
+    mission.get_by_role("button", name="Reset").click()
+    mission.locator("[role=status]").filter(has_text="Ignition at 60.200000 s").wait_for(timeout=3000)
+
+
 def test_page_without_code_flies_offline(mission):
     assert "Mission control" in mission.inner_text("body")
     for word in ("import", "MissionControl"):
         assert word not in mission.inner_text("body")
     (figure,) = figures(mission)
+    assert visible_pictures(mission) == 1
     check_names(figure)
     for n in range(mission.locator(".noUi-handle").count()):
         move_slider(figure, n, said=False)

@@ -35,6 +35,7 @@ WRONG = {
         ((..., -0.21), "rounded"),
     ],
     "1.2": [
+        (lambda e, c: np.mean(abs(abs(np.array(e)) - abs(np.array(c)))) / max(abs(np.array(e))), None),
         (lambda e, c: sum(abs(e - c)) / (len(e) - 1) / max(e), "two bugs left"),
         (lambda e, c: np.sum(e - c) / len(e) / np.max(np.abs(e)), "signed"),
         (mape, "MAPE"),

@@ -96,8 +96,8 @@ class Message(anywidget.AnyWidget):
                 name(el, el.textContent);
             };
             say();
-            // the controls come onto the page one by one
-            for (const wait of [0, 200, 1000, 3000]) setTimeout(say, wait);
+            // the controls come onto the page one by one; by then the sentence may be that the kernel is gone
+            for (const wait of [0, 200, 1000, 3000]) setTimeout(() => name(el, model.get("text")), wait);
             return watch(model, el, say);
         },
     };

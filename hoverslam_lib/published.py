@@ -5,6 +5,7 @@ what is wrong here.
 """
 
 import math
+from dataclasses import dataclass
 from enum import Enum
 
 import numpy as np
@@ -34,6 +35,39 @@ class Fault(Enum):
 ALL_FAULTS = frozenset(Fault)
 
 
+@dataclass(frozen=True, eq=False)
+class PublishedRun(Trajectory):
+    """A run of the paper's program.
+
+    Attributes
+    ----------
+    mass : ndarray, shape (n + 1,)
+        The mass that the equation divides by [kg]; below zero where the tank never empties and the engine burns on.
+    """
+
+    mass: np.ndarray
+
+
+def _members(faults):
+    try:
+        faults = frozenset(faults)
+    except TypeError:
+        raise TypeError(f"faults must be a collection of Fault; got {faults!r}") from None
+    if not faults <= ALL_FAULTS:
+        raise ValueError(
+            f"faults must be members of Fault: {', '.join(Fault.__members__)}; got {set(faults - ALL_FAULTS)}"
+        )
+    return faults
+
+
+def _burning_and_mass(t, t_ignite, faults):
+    """Does the engine push at t, and what is the mass [kg] then?"""
+    burn_time = t - t_ignite if t > t_ignite else 0
+    if Fault.TANK_NEVER_EMPTY not in faults and burn_time >= FALCON_9.burn_duration:
+        return False, FALCON_9.dry_mass
+    return t > t_ignite, FALCON_9.dry_mass + (FALCON_9.propellant_mass - FALCON_9.burn_rate * burn_time)
+
+
 def acceleration(t_ignite, faults=ALL_FAULTS):
     """Return the listing's `hddot`, f(t, h, v) [m/s²], with the given faults; with none it is the right equation.
 
@@ -44,32 +78,21 @@ def acceleration(t_ignite, faults=ALL_FAULTS):
     ValueError
         If something in `faults` is not a `Fault`.
     """
-    try:
-        faults = frozenset(faults)
-    except TypeError:
-        raise TypeError(f"faults must be a collection of Fault; got {faults!r}") from None
-    if not faults <= ALL_FAULTS:
-        raise ValueError(
-            f"faults must be members of Fault: {', '.join(Fault.__members__)}; got {set(faults - ALL_FAULTS)}"
-        )
+    faults = _members(faults)
     booster = FALCON_9
     thrust = 7.6e3 if Fault.THRUST_IN_KILONEWTONS in faults else booster.thrust
     if Fault.THRUST_SUBTRACTED in faults:
         thrust = -thrust
-    empties = Fault.TANK_NEVER_EMPTY not in faults
     always_up = Fault.DRAG_ALWAYS_UP in faults
-    burn_out, dry = booster.burn_duration, booster.dry_mass
     t_ignite = _validate.number("t_ignite", t_ignite, "s", least=0)
 
     def f(t, h, v):
-        burn_time = t - t_ignite if t > t_ignite else 0
-        empty = empties and burn_time >= burn_out
-        mass = dry if empty else dry + (booster.propellant_mass - booster.burn_rate * burn_time)
+        burning, mass = _burning_and_mass(t, t_ignite, faults)
         drag = (1 / (2 * mass)) * (_air_density(h) * booster.drag_coefficient * booster.area * v**2)
         if not always_up and v > 0:
             drag = -drag
         total = -EARTH.gravity(h) + drag
-        return total + thrust / mass if t > t_ignite and not empty else total
+        return total + thrust / mass if burning else total
 
     return f
 
@@ -89,12 +112,13 @@ def fly(t_ignite, *, dt, method="rkn4", faults=ALL_FAULTS):
 
     Returns
     -------
-    Trajectory
+    PublishedRun
         Its last row is the overshoot below the ground, or the first one after `TIME_CAP`, or the last one with finite
         numbers.
     """
     dt = _validate.number("dt", dt, "s", above=0)
     _validate.step_count(TIME_CAP, dt)
+    faults = _members(faults)
     f, step = acceleration(t_ignite, faults), step_function(method)
     start = Descent()
     t, h, v = 0.0, start.height, start.velocity
@@ -108,7 +132,8 @@ def fly(t_ignite, *, dt, method="rkn4", faults=ALL_FAULTS):
         if not math.isfinite(h + v):
             break
         rows.append((t, h, v))
-    return Trajectory(*(np.array(column) for column in zip(*rows, strict=True)))
+    t, h, v = (np.array(column) for column in zip(*rows, strict=True))
+    return PublishedRun(t, h, v, np.array([_burning_and_mass(moment, t_ignite, faults)[1] for moment in t]))
 
 
 def listed(run, *, at_rest=False):

@@ -90,6 +90,7 @@ def test_the_landing_at_2_6_m_is_a_step_across_mass_zero():
     i = int(np.searchsorted(run.t, 74.51))
     assert run.t[i : i + 2] == pytest.approx([74.52, 74.54], abs=1e-9)
     assert run.v[i : i + 2].round(1).tolist() == [-76.6, -1.6]
+    assert run.mass[i : i + 2].round(1).tolist() == [12.8, -16.8]
     # at v = 0 there is no drag, so f shows the mass that it divides the thrust of 7 600 by
     f = published.acceleration(35.88)
     gravity = G * EARTH_MASS / EARTH_RADIUS**2
@@ -164,6 +165,8 @@ def test_every_combination_of_faults_ends(faults, t_ignite, dt):
     assert np.all(run.h[:-1] > 0)
     assert run.h[-1] <= 0 or run.t[-1] >= TIME_CAP
     assert run.t[-1] < TIME_CAP + dt
+    burnt = np.clip(run.t - t_ignite, 0, math.inf if Fault.TANK_NEVER_EMPTY in faults else BURN_DURATION)
+    assert run.mass == pytest.approx(57_200 - 1_480 * burnt, rel=1e-9, abs=1e-6)
 
 
 @pytest.mark.parametrize(

@@ -129,7 +129,7 @@ def _try_published(descent, t_ignite, dt, method):
         "t": run.t,
         "h": run.h,
         "v": run.v,
-        "mass": FALCON_9.initial_mass - FALCON_9.burn_rate * np.where(lit, run.t - t_ignite, 0),
+        "mass": run.mass,
         "thrust": np.where(lit, -7.6e3, 0.0),
         "felt": np.array([f(*row) for row in zip(run.t, run.h, run.v, strict=True)]) + EARTH.gravity(run.h),
         "end": len(run.t),

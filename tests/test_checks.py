@@ -1,11 +1,13 @@
 """The exercises: right answers pass, wrong ones do not, and a hint names a mistake only if it was made."""
 
+import ast
 import contextlib
 import importlib
 import math
 import os
 import re
 import shutil
+import string
 import subprocess
 import sys
 import threading
@@ -204,6 +206,54 @@ def test_escaped_bar_and_a_change_that_takes_away_are_read(tmp_path):
     (exercise,) = pages.exercises(path)
     assert "return (1 | 2)\n" in exercise.changed(exercise.mistakes[0]).replace(" \n", "\n")
     assert exercise(lambda x: 3).mistake == "tripled"
+
+
+def named(node):
+    """Patterns of the names that ``mistake=…`` may be; none where it is no text but a name of Python."""
+    if isinstance(node, ast.IfExp):
+        return named(node.body) + named(node.orelse)
+    parts = node.values if isinstance(node, ast.JoinedStr) else [node] if isinstance(node, ast.Constant) else []
+    return (
+        ["".join(re.escape(part.value) if isinstance(part, ast.Constant) else ".+" for part in parts)] if parts else []
+    )
+
+
+def named_beside(exercise):
+    """The mistakes that the Python beside the page may name for this exercise: a pattern, and the values given."""
+    path, asked = exercise.path.with_suffix(".py"), [exercise.name, *re.findall(r"\w+", exercise.check)]
+    body = ast.parse(path.read_text(encoding="utf-8")).body if path.exists() else []
+    functions = {node.name: node for node in body if isinstance(node, ast.FunctionDef)}
+    while asked:
+        for node in ast.walk(functions.pop(asked.pop(), ast.Pass())):
+            if isinstance(node, ast.Name):
+                asked.append(node.id)
+            elif isinstance(node, ast.Call):
+                keywords = {keyword.arg: keyword.value for keyword in node.keywords}
+                yield from ((pattern, set(keywords)) for pattern in named(keywords.get("mistake")))
+
+
+def test_mistake_that_a_judge_names_stands_in_the_table_and_gets_what_its_hint_tells():
+    found = 0
+    for number, exercise in checks.EXERCISES.items():
+        for pattern, values in named_beside(exercise):
+            hints = [mistake.hint for mistake in exercise.mistakes if re.fullmatch(pattern, mistake.name)]
+            assert hints, f"{number}: no row for {pattern!r}"
+            fields = {field for hint in hints for _, field, _, _ in string.Formatter().parse(hint) if field}
+            assert fields <= values or None in values, f"{number}: {fields} of the hint for {pattern!r}"
+            found += 1
+    assert found, "nothing was read"
+
+
+@pytest.mark.parametrize("number", NUMBERS)
+def test_hint_and_place_of_every_case_can_be_told(number):
+    exercise, judge = checks.EXERCISES[number], checks.EXERCISES[number].judge
+    if isinstance(judge, judging.Cases | judging.Numbers):
+        assert [mistake.hint.format() for mistake in exercise.mistakes] == [m.hint for m in exercise.mistakes]
+    if isinstance(judge, judging.Cases):
+        for case, right in zip(judge.cases, judge.right, strict=True):
+            what = judge._wrong(case, "nothing alike", right).what
+            assert re.search(r"(That is|Not right) [^:.]", what), what
+            assert "{" not in what
 
 
 def test_lessons_1_to_12_have_three_exercises_each():

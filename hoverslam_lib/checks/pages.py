@@ -26,6 +26,7 @@ from hoverslam_lib.checks.judging import Cases, Numbers, Value
 NAMES = {name: getattr(hoverslam_lib, name) for name in hoverslam_lib.__all__}
 NAMES |= {"np": np, "math": math, "Value": Value}
 """What the Python of every page may use."""
+HEADER = ("mistake", "change", "hint")
 
 
 class PageError(ValueError):
@@ -172,33 +173,34 @@ class Exercise:
 
     def read(self, node, line):
         """Take up what stands in one place of the page."""
-        language, _, kind = node.info.strip().partition(" ") if node.type == "fence" else ("", "", "")
-        if language == "python" and kind == "check":
-            self.check, self.check_line = node.content, line
-        elif language == "python" and kind:
-            self.blocks[kind] = node.content
-        elif language == "python" and self.solution:
-            what = "a second solution: what is this block? `python check`, or `python` and a mistake's name"
-            raise self.error(line, what)
-        elif language == "python":
-            self.solution = node.content
-        elif node.type == "table":
-            self.mistakes += [self._row(row) for row in node.children[-1].children]
-        elif node.type == "bullet_list":
-            self.hints += map(_text, node.children)
-        elif node.type == "blockquote":
-            self.closing = _text(node)
-        elif call := re.fullmatch(r"`checks\.(\w+)\((.*)\)`", _text(node)):
-            self.name, self.answers = call.group(1), tuple(call.group(2).split(", "))
-            self.__name__, self.__doc__ = self.name, f"Check exercise {self.number}: {self.title}."
+        match [node.type, *node.info.split()]:
+            case ["fence", "python", "check"]:
+                self.check, self.check_line = node.content, line
+            case ["fence", "python"] if self.solution:
+                raise self.error(line, "a second solution: is it `python check`, or `python` and a mistake's name?")
+            case ["fence", "python"]:
+                self.solution = node.content
+            case ["fence", "python", *words]:
+                self.blocks[" ".join(words)] = node.content
+            case ["table"]:
+                rows = [self._row(row) for row in node.walk() if row.type == "tr"]
+                self.mistakes += [row for row in rows if row[:3] != HEADER]
+            case ["bullet_list"]:
+                self.hints += map(_text, node.children)
+            case ["blockquote"]:
+                self.closing = _text(node)
+            case ["paragraph"]:
+                if call := re.fullmatch(r"`checks\.(\w+)\((.*)\)`", _text(node)):
+                    self.name, self.answers = call.group(1), tuple(call.group(2).split(", "))
+                    self.__name__, self.__doc__ = self.name, f"Check exercise {self.number}: {self.title}."
 
     def _row(self, row):
-        cells = [cell.children[0] for cell in row.children]
-        texts, line = [cell.content for cell in cells], row.map[0] + 1
-        if len(cells) != 3 or not texts[0] or not texts[2]:
-            raise self.error(line, "a row should hold mistake | change | hint")
+        cells, line = [cell.children[0] for cell in row.children], row.map[0] + 1
+        if len(cells) != 3 or not cells[0].content or not cells[2].content:
+            raise self.error(line, f"a row should hold {' | '.join(HEADER)}")
+        name, changes, hint = (cell.content for cell in cells)
         code = ";".join(part.content for part in cells[1].children if part.type == "code_inline")
-        return Mistake(texts[0], code or texts[1], texts[2], line)
+        return Mistake(name, code or changes, hint, line)
 
     def complete(self):
         """Raise `PageError` if something is missing, or does not fit together."""

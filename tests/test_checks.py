@@ -471,12 +471,17 @@ def test_hostile_objects_leak_nothing(monkeypatch):
     assert "Unspeakable in line" in doubled(raises_what_has_no_text).text
 
 
-def test_line_of_an_error_is_the_students_own():
-    def asks_numpy(x):
-        return np.linalg.inv(np.zeros((2, 2)))
+@pytest.mark.parametrize("of_library", [lambda x: np.linalg.inv(np.zeros((2, 2))), lambda x: os.makedirs(x)])
+def test_line_of_an_error_is_the_students_own(of_library):
+    assert f"in line {of_library.__code__.co_firstlineno} of its cell" in doubled(of_library).text
 
-    own = asks_numpy.__code__.co_firstlineno + 1
-    assert f"in line {own} of its cell" in doubled(asks_numpy).text
+
+def test_line_of_a_page_is_not_the_students(tmp_path):
+    path = tmp_path / "lesson_02.md"
+    page = PAGE.replace('check((1.0,), (3.0,), where="for {x:g}")', "check(lambda my_trial: my_trial(1.0))")
+    path.write_text(page, encoding="utf-8")
+    (exercise,) = pages.exercises(path)
+    assert re.search(r"raised TypeError: .* given\.$", exercise(lambda: 1).text)
 
 
 def test_call_that_does_not_fit_says_how():

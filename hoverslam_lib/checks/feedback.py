@@ -17,7 +17,7 @@ LONGEST = 120
 """More characters of what a student's answer says are not shown."""
 MARKS = str.maketrans("✔✘○—", "+-o-")
 """For a terminal that does not know them."""
-ELSEWHERE = str(Path(__file__).parent.parent), sysconfig.get_path("stdlib"), "-packages", "<__array", ".md>"
+ELSEWHERE = str(Path(__file__).parent.parent), sysconfig.get_path("stdlib"), "<frozen", "-packages", ".md>"
 """What stands in the name of a file that is no cell: of the library, of Python, of a package, of a page."""
 
 

@@ -82,14 +82,11 @@ class Cases:
         takes(answer, *self.parameters)
         found = []
         for case, right in zip(self.cases, self.right, strict=True):
-            found.append(_outcome(answer, case))
-            if isinstance(found[-1], Wrong):
-                raise found[-1]
-            if not self._fits(found[-1], right):
-                yield self._wrong(case, found[-1], right)
-                name = self._mistake(answer, found)
-                if name:
-                    raise Wrong(mistake=name)
+            got = _outcome(answer, case)
+            found.append(got)
+            if not self._fits(got, right):
+                yield self._wrong(case, got, right)
+                self._recognise(answer, found)
                 return
             yield
 
@@ -98,9 +95,9 @@ class Cases:
             return isinstance(got, type(right))
         return distance(got, right, self.rtol, self.atol) <= 1
 
-    def _mistake(self, answer, found):
-        """The name of the mistake that does just the same: in the last of the cases found, which it spoils, and in all
-        others that it spoils.
+    def _recognise(self, answer, found):
+        """Raise `Wrong` with the mistake that does just the same: in the last of the cases found, which it spoils, and
+        in all others that it spoils.
         """
 
         def off(mistake, i):
@@ -114,11 +111,12 @@ class Cases:
         spoiling = [row for row in rows if not self._fits(self.leads_to(row, last), self.right[last])]
         for share, row in sorted((off(row, last), row) for row in spoiling):
             if share <= self.near and all(off(row, i) <= self.near for i in range(self.tests)):
-                return self.mistakes[row][0]
-        return None
+                raise Wrong(mistake=self.mistakes[row][0])
 
     def _wrong(self, case, got, right):
         """What is to be said if no mistake is recognised."""
+        if isinstance(got, Wrong):
+            raise got
         if isinstance(got, Exception):
             return Wrong(raised(got))
         if callable(case):

@@ -42,7 +42,7 @@ class Mistake(NamedTuple):
     line: int
 
 
-@dataclass(repr=False)
+@dataclass(eq=False, repr=False)
 class Exercise:
     """One exercise as it stands on a page, lines counted from 1; called with answers, it judges them."""
 

@@ -24,16 +24,17 @@ def pair(value, names=("h", "v")):
 
 def array(value, shape, name="the result", wanted=None):
     """An array of finite floats of a given shape, or `Wrong` with what it is instead."""
-    made, start = numeric(value), name if name.startswith("my_") else name[0].upper() + name[1:]
-    should = f"{start} should be {wanted or _amount(shape)}; it"
-    if made is None:
-        missing = value is None and start != name
-        raise Wrong(f"{should} is {text_of(value, repr, 40)}{': is a `return` missing?' if missing else '.'}")
-    if made.shape != tuple(shape) and not (shape == () and made.size == 1):
-        raise Wrong(f"{should} holds {_amount(made.shape)}.")
-    for bad in made[~np.isfinite(made)]:
+    made = numeric(value)
+    fits = made is not None and (made.shape == tuple(shape) or (made.size == 1 and shape == ()))
+    if fits and np.isfinite(made).all():
+        return made
+    start = name if name.startswith("my_") else name[0].upper() + name[1:]
+    if fits:
+        bad = made[~np.isfinite(made)][0]
         raise Wrong(f"{start} {'holds' if shape else 'is'} {bad}, which is not a finite number.")
-    return made
+    it = f"is {text_of(value, repr, 40)}" if made is None else f"holds {_amount(made.shape)}"
+    end = ": is a `return` missing?" if value is None and start != name else "."
+    raise Wrong(f"{start} should be {wanted or _amount(shape)}; it {it}{end}")
 
 
 def _amount(shape):
@@ -42,9 +43,12 @@ def _amount(shape):
 
 def numeric(value):
     """An array of floats, or None if it is anything else."""
-    with contextlib.suppress(TypeError, ValueError):
+    try:
         made = np.asarray(value)
-        return None if value is None or made.dtype.kind in "USbc" else made.astype(float)
+        strange = made.dtype.kind in "USbc" or (made.dtype.kind == "O" and None in made)
+        return None if strange else made.astype(float)
+    except (TypeError, ValueError):
+        return None
 
 
 def distance(a, b, rtol, atol):

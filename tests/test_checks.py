@@ -251,7 +251,7 @@ def test_hint_and_place_of_every_case_can_be_told(number):
         assert [mistake.hint.format() for mistake in exercise.mistakes] == [m.hint for m in exercise.mistakes]
     if isinstance(judge, judging.Cases):
         for case, right in zip(judge.cases, judge.right, strict=True):
-            what = judge._wrong(case, "nothing alike", right).what
+            what = judging.unlike("nothing alike", right, judge.place(case)).what
             assert re.search(r"(That is|Not right) [^:.]", what), what
             assert "{" not in what
 

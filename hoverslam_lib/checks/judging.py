@@ -24,7 +24,7 @@ class Value:
 
 
 class Numbers:
-    """Judge numbers: by the name of the answer each `Value` and what is right; the mistakes as (name, {answer: what it
+    """Judge numbers: the `Value` and what is right by the name of the answer, the mistakes as (name, {answer: what it
     leads to}). An answer may be ``...``.
     """
 
@@ -85,7 +85,7 @@ class Cases:
             got = _outcome(answer, case)
             found.append(got)
             if not self._fits(got, right):
-                yield self._wrong(case, got, right)
+                yield unlike(got, right, self.place(case), self.names, self.atol)
                 self._recognise(answer, found)
                 return
             yield
@@ -113,30 +113,11 @@ class Cases:
             if share <= self.near and all(off(row, i) <= self.near for i in range(self.tests)):
                 raise Wrong(mistake=self.mistakes[row][0])
 
-    def _wrong(self, case, got, right):
-        """What is to be said if no mistake is recognised."""
-        if isinstance(got, Wrong):
-            raise got
-        if isinstance(got, Exception):
-            return Wrong(raised(got))
+    def place(self, case):
+        """Which case that is, for the student."""
         if callable(case):
-            where = " ".join((case.__doc__ or "").split())
-        else:
-            where = self.where.format(**dict(zip(self.parameters, case, strict=True)))
-        if isinstance(right, Exception):
-            what = f"Not right {where}: it should raise {type(right).__name__}, and gives {digits(got)}."
-            return Wrong(what, nudge=True)
-        try:  # of the kind of the right one
-            if isinstance(right, tuple) and np.shape(right) == (2,):
-                pair(got, self.names)
-            elif numeric(right) is not None:
-                array(got, np.shape(right))
-        except Wrong as wrong:
-            return Wrong(f"{wrong.what} That is {where}.")
-        if distance(got, right, 1e-4, self.atol) <= 1:
-            what = f"Near {where}, but not to nine digits: is something approximated there, or rounded?"
-            return Wrong(what, nudge=True)
-        return Wrong(f"Not right {where}: it gives {digits(got)}.", nudge=True)
+            return " ".join((case.__doc__ or "").split())
+        return self.where.format(**dict(zip(self.parameters, case, strict=True)))
 
 
 def _outcome(function, case):
@@ -145,3 +126,23 @@ def _outcome(function, case):
         return case(function) if callable(case) else repeatable(function, *case)
     except Exception as error:
         return error
+
+
+def unlike(got, right, where, names=("h", "v"), atol=0.0):
+    """How a result that is not right differs from the right one, as a `Wrong`."""
+    if isinstance(got, Wrong):
+        raise got
+    if isinstance(got, Exception):
+        return Wrong(raised(got))
+    if isinstance(right, Exception):
+        return Wrong(f"Not right {where}: it should raise {type(right).__name__}, and gives {digits(got)}.", nudge=True)
+    try:  # of the kind of the right one
+        if isinstance(right, tuple) and np.shape(right) == (2,):
+            pair(got, names)
+        elif numeric(right) is not None:
+            array(got, np.shape(right))
+    except Wrong as wrong:
+        return Wrong(f"{wrong.what} That is {where}.")
+    if distance(got, right, 1e-4, atol) <= 1:
+        return Wrong(f"Near {where}, but not to nine digits: is something approximated there, or rounded?", nudge=True)
+    return Wrong(f"Not right {where}: it gives {digits(got)}.", nudge=True)

@@ -171,53 +171,6 @@ class Exercise:
         """What is wrong with the page, to be raised."""
         return PageError(f"{self.path.name}, line {line}: {what}")
 
-    def read(self, node, line):
-        """Take up what stands in one place of the page."""
-        match [node.type, *node.info.split()]:
-            case ["fence", "python", "check"]:
-                self.check, self.check_line = node.content, line
-            case ["fence", "python"] if self.solution:
-                raise self.error(line, "a second solution: is it `python check`, or `python` and a mistake's name?")
-            case ["fence", "python"]:
-                self.solution = node.content
-            case ["fence", "python", *words]:
-                self.blocks[" ".join(words)] = node.content
-            case ["table"]:
-                rows = [self._row(row) for row in node.walk() if row.type == "tr"]
-                self.mistakes += [row for row in rows if row[:3] != HEADER]
-            case ["bullet_list"]:
-                self.hints += map(_text, node.children)
-            case ["blockquote"]:
-                self.closing = _text(node)
-            case ["paragraph"]:
-                if call := re.fullmatch(r"`checks\.(\w+)\((.*)\)`", _text(node)):
-                    self.name, self.answers = call.group(1), tuple(call.group(2).split(", "))
-                    self.__name__, self.__doc__ = self.name, f"Check exercise {self.number}: {self.title}."
-
-    def _row(self, row):
-        cells, line = [cell.children[0] for cell in row.children], row.map[0] + 1
-        if len(cells) != 3 or not cells[0].content or not cells[2].content:
-            raise self.error(line, f"a row should hold {' | '.join(HEADER)}")
-        name, changes, hint = (cell.content for cell in cells)
-        code = ";".join(part.content for part in cells[1].children if part.type == "code_inline")
-        return Mistake(name, code or changes, hint, line)
-
-    def complete(self):
-        """Raise `PageError` if something is missing, or does not fit together."""
-        call = "the call, such as `checks.name(my_name)`"
-        for part, what in ((self.name, call), (self.hints, "hints"), (self.solution, "a solution")):
-            if not part:
-                raise self.error(self.line, f"{self.number} lacks {what}")
-        names = {}
-        for mistake in self.mistakes:
-            if names.setdefault(mistake.name, mistake.hint) != mistake.hint:
-                raise self.error(mistake.line, f"{mistake.name!r} has another hint above: one name, one hint")
-            if "def " in self.solution:
-                self.changed(mistake)
-        for name in self.blocks:
-            if name not in names:
-                raise self.error(self.line, f"the block `python {name}` of {self.number} has no row in the table")
-
 
 def exercises(path):
     """The exercises of a page; raises `PageError` if it is malformed."""
@@ -230,10 +183,65 @@ def exercises(path):
             if not dot or not re.fullmatch(r"\d+\.\d+", number):
                 raise found[-1].error(line, "a heading should be like `## 2.1 · title`")
         elif found:
-            found[-1].read(node, line)
+            _read(found[-1], node, line)
     for exercise in found:
-        exercise.complete()
+        _complete(exercise)
     return found
+
+
+def _read(exercise, node, line):
+    """Take up what stands in one place of the page."""
+    match [node.type, *node.info.split()]:
+        case ["fence", "python", "check"]:
+            exercise.check, exercise.check_line = node.content, line
+        case ["fence", "python"] if exercise.solution:
+            raise exercise.error(line, "a second solution: is it `python check`, or `python` and a mistake's name?")
+        case ["fence", "python"]:
+            exercise.solution = node.content
+        case ["fence", "python", *words]:
+            exercise.blocks[" ".join(words)] = node.content
+        case ["table"]:
+            rows = [_row(exercise, row) for row in node.walk() if row.type == "tr"]
+            exercise.mistakes += [row for row in rows if row[:3] != HEADER]
+        case ["bullet_list"]:
+            exercise.hints += map(_text, node.children)
+        case ["blockquote"]:
+            exercise.closing = _text(node)
+        case ["paragraph"]:
+            if call := re.fullmatch(r"`checks\.(\w+)\((.*)\)`", _text(node)):
+                exercise.name, exercise.answers = call.group(1), tuple(call.group(2).split(", "))
+                exercise.__name__, exercise.__doc__ = (
+                    exercise.name,
+                    f"Check exercise {exercise.number}: {exercise.title}.",
+                )
+
+
+def _row(exercise, row):
+    cells, line = [cell.children[0] for cell in row.children], row.map[0] + 1
+    if len(cells) != 3 or not cells[0].content or not cells[2].content:
+        raise exercise.error(line, f"a row should hold {' | '.join(HEADER)}")
+    name, changes, hint = (cell.content for cell in cells)
+    code = ";".join(part.content for part in cells[1].children if part.type == "code_inline")
+    return Mistake(name, code or changes, hint, line)
+
+
+def _complete(exercise):
+    """Raise `PageError` if something is missing, or does not fit together."""
+    call = "the call, such as `checks.name(my_name)`"
+    for part, what in ((exercise.name, call), (exercise.hints, "hints"), (exercise.solution, "a solution")):
+        if not part:
+            raise exercise.error(exercise.line, f"{exercise.number} lacks {what}")
+    names = {}
+    for mistake in exercise.mistakes:
+        if names.setdefault(mistake.name, mistake.hint) != mistake.hint:
+            raise exercise.error(mistake.line, f"{mistake.name!r} has another hint above: one name, one hint")
+        if "def " in exercise.solution:
+            exercise.changed(mistake)
+    for name in exercise.blocks:
+        if name not in names:
+            raise exercise.error(
+                exercise.line, f"the block `python {name}` of {exercise.number} has no row in the table"
+            )
 
 
 def _text(node):

@@ -209,11 +209,9 @@ def _read(exercise, node, line):
             exercise.closing = _text(node)
         case ["paragraph"]:
             if call := re.fullmatch(r"`checks\.(\w+)\((.*)\)`", _text(node)):
-                exercise.name, exercise.answers = call.group(1), tuple(call.group(2).split(", "))
-                exercise.__name__, exercise.__doc__ = (
-                    exercise.name,
-                    f"Check exercise {exercise.number}: {exercise.title}.",
-                )
+                exercise.__name__ = exercise.name = call.group(1)
+                exercise.__doc__ = f"Check exercise {exercise.number}: {exercise.title}."
+                exercise.answers = tuple(call.group(2).split(", "))
 
 
 def _row(exercise, row):
@@ -239,9 +237,7 @@ def _complete(exercise):
             exercise.changed(mistake)
     for name in exercise.blocks:
         if name not in names:
-            raise exercise.error(
-                exercise.line, f"the block `python {name}` of {exercise.number} has no row in the table"
-            )
+            raise exercise.error(exercise.line, f"the block `python {name}` has no row in the table")
 
 
 def _text(node):

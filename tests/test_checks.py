@@ -1,11 +1,13 @@
 """The exercises: right answers pass, wrong ones do not, and a hint names a mistake only if it was made."""
 
+import ast
 import contextlib
 import importlib
 import math
 import os
 import re
 import shutil
+import string
 import subprocess
 import sys
 import threading
@@ -19,7 +21,6 @@ from hoverslam_lib import checks, course
 from hoverslam_lib.checks import feedback, judging, pages, record, stopping
 from hoverslam_lib.checks.answers import number as as_number
 from hoverslam_lib.checks.answers import repeatable
-from hoverslam_lib.checks.judging import Cases, Value
 
 OPEN = "○ not attempted yet"
 LESSONS = [path for path in course.lessons() if re.match(r"\d", path.name)]
@@ -41,36 +42,28 @@ def rows():
     """Every mistake of every table."""
     return [
         pytest.param(number, i, id=f"{number}-{mistake.name}")
-        for number, entry in checks.ENTRIES.items()
-        for i, mistake in enumerate(entry.mistakes)
+        for number, exercise in checks.EXERCISES.items()
+        for i, mistake in enumerate(exercise.mistakes)
     ]
 
 
 def as_solved(number, row=None):
     """The answers of the solution, or with the mistake of a row of the table made in it."""
-    entry, judge = checks.ENTRIES[number], checks.EXERCISES[number].judge
-    space = pages.namespace(pages.own_module(entry.path))
-    mistake = None if row is None else entry.mistakes[row]
-    if isinstance(judge, pages.Lazy) and mistake:
-        _, made = judge.made.mistakes[row][:2]
-        if isinstance(judge.made, Cases):
-            return (made,)
-        return tuple(made.get(name, value.right) for name, value in judge.made.values.items())
-    if mistake is None or "->" in mistake.changes or mistake.name in entry.blocks:
-        source = entry.changed(mistake) if mistake else entry.solution
-        if isinstance(judge, pages.Lazy):
-            space |= {"check": lambda *cases, **options: None, "Value": Value}
-            pages.run(entry, entry.check, space, entry.check_line)
-        solved = pages.run(entry, source, space, entry.line)
-    else:
-        solved = pages.run(entry, entry.solution, space, entry.line)
-        solved = solved | pages.assigned(entry, mistake, solved)
-    return tuple(solved[name] for name in entry.answers)
+    exercise = checks.EXERCISES[number]
+    judge, given = exercise.judge, exercise.run(exercise.solution, exercise.line)
+    if row is not None:
+        mistake = exercise.mistakes[row]
+        if "->" in mistake.changes or mistake.name in exercise.blocks:
+            given = exercise.run(exercise.changed(mistake), mistake.line)
+        else:
+            right = given | (judge.right if isinstance(judge, judging.Numbers) else {})
+            given = right | exercise.assigned(mistake, right)
+    return tuple(given[name] for name in exercise.answers)
 
 
 def cells_of(path):
     """Number and source of every exercise cell, in order."""
-    names = {check.__name__: number for number, check in checks.EXERCISES.items()}
+    names = {check.name: number for number, check in checks.EXERCISES.items()}
     for cell in nbformat.read(path, as_version=4).cells:
         called = re.search(r"^checks\.(\w+)\(", cell.source, re.MULTILINE) if cell.cell_type == "code" else None
         if called and called.group(1) in names:
@@ -86,8 +79,8 @@ def _folder(tmp_path, monkeypatch):
     """A student's folder, and no other."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(record.platformdirs, "user_data_dir", lambda name: str(tmp_path / "user"))
-    feedback._tries.clear()
-    feedback._last.clear()
+    for exercise in [*checks.EXERCISES.values(), doubled]:
+        exercise.tries.clear()
 
 
 def given(answer):
@@ -112,22 +105,22 @@ def test_right_answer_written_differently_passes(number, answer):
 
 @pytest.mark.parametrize(("number", "row"), rows())
 def test_mistake_of_the_table_is_recognised_as_itself(number, row):
-    mistake = checks.ENTRIES[number].mistakes[row]
+    mistake = checks.EXERCISES[number].mistakes[row]
     said = checks.EXERCISES[number](*as_solved(number, row))
     assert not said.done
     assert said.mistake == mistake.name, said
     assert "{" not in said.hint
 
 
-@pytest.mark.parametrize("number", checks.ENTRIES)
+@pytest.mark.parametrize("number", NUMBERS)
 def test_solution_of_the_page_passes(number):
     said = checks.EXERCISES[number](*as_solved(number))
     assert said.done, said
-    assert said.text == f"✔ {said.tests} of {said.tests}" + f" — {checks.ENTRIES[number].closing}".removesuffix(" — ")
+    assert said.text == f"✔ {said.tests} of {said.tests}" + f" — {checks.EXERCISES[number].closing}".removesuffix(" — ")
 
 
 def test_every_exercise_has_mistakes_and_a_right_answer_of_another_kind():
-    wrong = {number: len(entry.mistakes) for number, entry in checks.ENTRIES.items()}
+    wrong = {number: len(exercise.mistakes) for number, exercise in checks.EXERCISES.items()}
     right = dict.fromkeys([number for number in NUMBERS if number != "0.1"], 0)
     for param in answers("WRONG"):
         wrong[param.values[0]] = wrong.get(param.values[0], 0) + 1
@@ -171,13 +164,13 @@ check((1.0,), (3.0,), where="for {x:g}")
         ("`2 * -> 3 *`", "`3`", r"line 21: '3' is no change"),
         ("| You triple. |", "|", r"line 21: a row should hold"),
         ("## 2.1 · a trial", "## a trial", r"line 3: a heading"),
-        ("`checks.trial(my_trial)`", "", r"line 3: the call is missing"),
+        ("`checks.trial(my_trial)`", "", r"line 3: 2.1 lacks the call"),
         (
             "| You triple. |",
             "| You triple. |\n| tripled | `x -> 3 * x` | Other. |",
             r"line 22: 'tripled' has another hint",
         ),
-        ("- one\n- two", "", r"line 3: hints of 2.1 are missing"),
+        ("- one\n- two", "", r"line 3: 2.1 lacks hints"),
         ("```python check", "```python", r"line 15: a second solution"),
         ("> Done.", "```python doubled twice\nx\n```", r"line 3: the block `python doubled twice`"),
     ],
@@ -187,7 +180,7 @@ def test_malformed_page_says_in_which_line(tmp_path, old, new, expected):
     assert old in PAGE
     path.write_text(PAGE.replace(old, new), encoding="utf-8")
     with pytest.raises(pages.PageError, match=f"lesson_02.md, {expected}"):
-        pages.entries(path)
+        pages.exercises(path)
 
 
 @pytest.mark.parametrize(
@@ -201,18 +194,66 @@ def test_malformed_page_says_in_which_line(tmp_path, old, new, expected):
 def test_page_whose_python_fails_says_in_which_line(tmp_path, old, new, expected):
     path = tmp_path / "lesson_02.md"
     path.write_text(PAGE.replace(old, new), encoding="utf-8")
-    (entry,) = pages.entries(path)
+    (exercise,) = pages.exercises(path)
     with pytest.raises(pages.PageError, match=f"lesson_02.md, {expected}"):
-        entry.exercise(None)(lambda x: x)
+        exercise(lambda x: x)
 
 
 def test_escaped_bar_and_a_change_that_takes_away_are_read(tmp_path):
     path = tmp_path / "lesson_02.md"
     page = PAGE.replace("return 2 * x", "return (2 | 2) * x").replace("`2 * -> 3 *`", r"`2 \| 2 -> 1 \| 2`; `* x ->`")
     path.write_text(page, encoding="utf-8")
-    (entry,) = pages.entries(path)
-    assert "return (1 | 2)\n" in entry.changed(entry.mistakes[0]).replace(" \n", "\n")
-    assert entry.exercise(None)(lambda x: 3).mistake == "tripled"
+    (exercise,) = pages.exercises(path)
+    assert "return (1 | 2)\n" in exercise.changed(exercise.mistakes[0]).replace(" \n", "\n")
+    assert exercise(lambda x: 3).mistake == "tripled"
+
+
+def named(node):
+    """Patterns of the names that ``mistake=…`` may be; none where it is no text but a name of Python."""
+    if isinstance(node, ast.IfExp):
+        return named(node.body) + named(node.orelse)
+    parts = node.values if isinstance(node, ast.JoinedStr) else [node] if isinstance(node, ast.Constant) else []
+    return (
+        ["".join(re.escape(part.value) if isinstance(part, ast.Constant) else ".+" for part in parts)] if parts else []
+    )
+
+
+def named_beside(exercise):
+    """The mistakes that the Python beside the page may name for this exercise: a pattern, and the values given."""
+    path, asked = exercise.path.with_suffix(".py"), [exercise.name, *re.findall(r"\w+", exercise.check)]
+    body = ast.parse(path.read_text(encoding="utf-8")).body if path.exists() else []
+    functions = {node.name: node for node in body if isinstance(node, ast.FunctionDef)}
+    while asked:
+        for node in ast.walk(functions.pop(asked.pop(), ast.Pass())):
+            if isinstance(node, ast.Name):
+                asked.append(node.id)
+            elif isinstance(node, ast.Call):
+                keywords = {keyword.arg: keyword.value for keyword in node.keywords}
+                yield from ((pattern, set(keywords)) for pattern in named(keywords.get("mistake")))
+
+
+def test_mistake_that_a_judge_names_stands_in_the_table_and_gets_what_its_hint_tells():
+    found = 0
+    for number, exercise in checks.EXERCISES.items():
+        for pattern, values in named_beside(exercise):
+            hints = [mistake.hint for mistake in exercise.mistakes if re.fullmatch(pattern, mistake.name)]
+            assert hints, f"{number}: no row for {pattern!r}"
+            fields = {field for hint in hints for _, field, _, _ in string.Formatter().parse(hint) if field}
+            assert fields <= values or None in values, f"{number}: {fields} of the hint for {pattern!r}"
+            found += 1
+    assert found, "nothing was read"
+
+
+@pytest.mark.parametrize("number", NUMBERS)
+def test_hint_and_place_of_every_case_can_be_told(number):
+    exercise, judge = checks.EXERCISES[number], checks.EXERCISES[number].judge
+    if isinstance(judge, judging.Cases | judging.Numbers):
+        assert [mistake.hint.format() for mistake in exercise.mistakes] == [m.hint for m in exercise.mistakes]
+    if isinstance(judge, judging.Cases):
+        for case, right in zip(judge.cases, judge.right, strict=True):
+            what = judging.unlike("nothing alike", right, judge.place(case)).what
+            assert re.search(r"(That is|Not right) [^:.]", what), what
+            assert "{" not in what
 
 
 def test_lessons_1_to_12_have_three_exercises_each():
@@ -248,12 +289,10 @@ def test_solutions_do_not_stand_in_a_check(number):
     lesson = int(number.split(".")[0])
     code = [line.split("#")[0].strip() for line in solutions(lesson)[number].splitlines()]
     telling = {line.removeprefix("return ") for line in code if len(line.removeprefix("return ")) > 12}
-    said = [check.__doc__, *check.hints]
+    said = [check.__doc__, repr(check), *check.hints, *(mistake.hint for mistake in check.mistakes)]
     said += [
         repr(check(*given(answer))) for _, (answer, _) in (p.values for p in answers("WRONG") if p.values[0] == number)
     ]
-    if number in checks.ENTRIES:
-        said += [mistake.hint for mistake in checks.ENTRIES[number].mistakes]
     for line in telling - {line for line in telling if line.startswith(("def ", "import ", "from "))}:
         assert not [text for text in said if line in text], line
 
@@ -261,11 +300,13 @@ def test_solutions_do_not_stand_in_a_check(number):
 # ---- whatever an answer does ----------------------------------------------------------------------------------------
 
 
-HINTS = ("general", "more concrete", "most concrete")
+HINTS = ["general", "more concrete", "most concrete"]
 
 
-def check_of(judge, tests=2):
-    return feedback.Exercise("2.1", "a trial", "trial", ("my_answer",), HINTS, feedback.Steps(judge, tests))
+def check_of(judge):
+    exercise = pages.Exercise(pages.Path("lesson_02.md"), 1, "2.1", "a trial", "trial", ("my_answer",), HINTS)
+    exercise.judge, judge.tests = judge, 2
+    return exercise
 
 
 @check_of
@@ -303,12 +344,12 @@ BEHAVIOUR = {
     "calls itself": (calls_itself, "calls itself"),
     "leaves": (lambda x: sys.exit(3), "raised SystemExit"),
     "None": (lambda x: print(x), "return"),
-    "a string": (lambda x: "2.0 m", "should be a number; it is '2.0 m'"),
+    "a string": (lambda x: "2.0 m", "should be one number; it is '2.0 m'"),
     "a list": (lambda x: [x, x], "it holds 2 numbers"),
     "nan": (lambda x: math.nan, "nan"),
     "inf": (lambda x: math.inf, "inf"),
-    "a complex number": (lambda x: 2j * x, "should be a number"),
-    "itself": (lambda x: raises, "should be a number"),
+    "a complex number": (lambda x: 2j * x, "should be one number"),
+    "itself": (lambda x: raises, "should be one number"),
     "too many arguments": (lambda x, y: x, "raised TypeError"),
     "not a function": (3.0, "raised TypeError"),
 }
@@ -430,12 +471,17 @@ def test_hostile_objects_leak_nothing(monkeypatch):
     assert "Unspeakable in line" in doubled(raises_what_has_no_text).text
 
 
-def test_line_of_an_error_is_the_students_own():
-    def asks_numpy(x):
-        return np.linalg.inv(np.zeros((2, 2)))
+@pytest.mark.parametrize("of_library", [lambda x: np.linalg.inv(np.zeros((2, 2))), lambda x: os.makedirs(x)])
+def test_line_of_an_error_is_the_students_own(of_library):
+    assert f"in line {of_library.__code__.co_firstlineno} of its cell" in doubled(of_library).text
 
-    own = asks_numpy.__code__.co_firstlineno + 1
-    assert f"in line {own} of its cell" in doubled(asks_numpy).text
+
+def test_line_of_a_page_is_not_the_students(tmp_path):
+    path = tmp_path / "lesson_02.md"
+    page = PAGE.replace('check((1.0,), (3.0,), where="for {x:g}")', "check(lambda my_trial: my_trial(1.0))")
+    path.write_text(page, encoding="utf-8")
+    (exercise,) = pages.exercises(path)
+    assert re.search(r"raised TypeError: .* given\.$", exercise(lambda: 1).text)
 
 
 def test_call_that_does_not_fit_says_how():
@@ -462,13 +508,13 @@ def test_one_answer_of_several_is_judged_while_others_are_open():
 
 
 def test_mistake_that_never_ends_only_costs_its_time(tmp_path, monkeypatch):
-    monkeypatch.setattr(judging, "TIME_LIMIT", 0.3)
+    monkeypatch.setattr(feedback, "TIME_LIMIT", 0.3)
     path = tmp_path / "lesson_02.md"
     solution = "n = 0\n    while n < x:\n        n += 1\n    return 2 * n"
     page = PAGE.replace("return 2 * x", solution).replace("`2 * -> 3 *`", "`n += 1 -> n += 0`")
     path.write_text(page, encoding="utf-8")
-    (entry,) = pages.entries(path)
-    said = entry.exercise(None)(lambda x: 3 * x)
+    (exercise,) = pages.exercises(path)
+    said = exercise(lambda x: 3 * x)
     assert said.mistake is None
     assert "Not right for 1: it gives 3. one" in said.text
 
@@ -539,7 +585,7 @@ def test_untouched_stubs_are_open():
 
 
 def test_feedback_is_escaped_and_readable_without_colour():
-    said = feedback.Feedback("2.1", 0, 2, "is 1 < 2?")
+    said = feedback.Feedback(0, 2, "is 1 < 2?")
     assert "1 &lt; 2" in said._repr_html_()
     assert "✘ 0 of 2" in said._repr_html_()
     assert "--jp-error-color1" in said._repr_html_()

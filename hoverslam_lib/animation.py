@@ -1,11 +1,13 @@
-"""A flight as a moving picture: a GIF of tens of kilobytes with one palette, which plays without a kernel.
+"""A flight as a moving picture: a GIF of some hundred kilobytes with one palette, which plays without a kernel.
 
 A film is made of *scenes*. A scene is a function that draws on axes what stays and returns ``move(t)``, which puts
 what moves where it belongs at the time t [s] and returns those artists. The same scene makes the film and its stills.
 """
 
+import math
 import struct
 import sys
+import time
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -22,6 +24,12 @@ from hoverslam_lib.plotting import Picture, use_style
 
 COLOURS = 16
 """Colours of a film, shared by all its frames."""
+
+PLAYS = 3
+"""How often a film plays before it stands still on its last frame: what moves for ever takes the eye off the text."""
+
+LEGIBLE = 200
+"""How long a number stands in a film of a landing [ms], because nobody reads faster."""
 
 FREE_FALL = 9.81
 """One g [m/s²]."""
@@ -66,7 +74,9 @@ class Animation:
         return self.alt
 
     def _repr_html_(self):
-        return Picture(self.gif, self.alt, self.width, kind="gif")._repr_html_()
+        shown = Picture(self.gif, self.alt, self.width, kind="gif")._repr_html_()
+        # a browser that has played a film plays it again only from an address that is new to it
+        return shown.removesuffix('">') + f'#{time.time_ns()}">'
 
 
 def film(fig, move, times, *, alt, duration=40, hold=2000):
@@ -141,7 +151,7 @@ def _indexed(frames, palette):
 
 
 def _gif(frames, palette, durations):
-    """A GIF that runs for ever; a frame stores what has changed, and elsewhere the last colour: transparent.
+    """A GIF that plays `PLAYS` times; a frame stores what has changed, and elsewhere the last colour: transparent.
 
     Pillow compresses the frames. Its own film writer would give each frame a palette of its own.
     """
@@ -149,7 +159,8 @@ def _gif(frames, palette, durations):
     unchanged = COLOURS - 1
     colours = palette.astype(np.uint8).tobytes().ljust(3 * COLOURS, b"\0")
     sizes = struct.pack("<HHBBB", width, height, 0xF0 | COLOURS.bit_length() - 2, 0, 0)
-    parts = [b"GIF89a", sizes, colours, b"\x21\xff\x0bNETSCAPE2.0\x03\x01\0\0\0"]
+    again = b"\x21\xff\x0bNETSCAPE2.0\x03\x01" + struct.pack("<HB", PLAYS - 1, 0)
+    parts = [b"GIF89a", sizes, colours, again]
     before = None
     for frame, duration in zip(frames, durations, strict=True):
         rows, columns = slice(0, height), slice(0, width)
@@ -265,7 +276,7 @@ def booster_scene(ax, flight, *, top):
     ax.set_yticks([tick for tick in ax.get_yticks() if 0 <= tick <= 1.05 * top / unit])
     style = {"linestyle": "none", "markeredgewidth": 0}
     plume, legs, body = (
-        ax.plot([0], [0], marker=marker, markersize=96, color=color, **style)[0]
+        ax.plot([0], [0], marker=marker, markersize=120, color=color, **style)[0]
         for marker, color in ((_plume(1), "#E69F00"), (_LEGS, "black"), (_BODY, "#0072B2"))
     )
     plume.set_clip_path(Rectangle((-1, 0), 2, 2 * top / unit, transform=ax.transData))
@@ -321,8 +332,8 @@ def instruments(ax, flight):
     ax.set(xlim=(0, 1), ylim=(-0.6, 6.4))
     numbers = {}
     for n, name in enumerate(["time", *_QUANTITIES]):
-        ax.text(0, 5 - n, name, color="0.35", va="center", fontsize=10)
-        text = {"ha": "right", "va": "center", "fontweight": "bold", "fontsize": 10, "antialiased": False}
+        ax.text(0, 5 - n, name, color="0.35", va="center", fontsize=12)
+        text = {"ha": "right", "va": "center", "fontweight": "bold", "fontsize": 12, "antialiased": False}
         numbers[name] = ax.text(0.95, 5 - n, "", **text)  # changing numbers fill the file: two colours are enough
 
     def move(t):
@@ -351,6 +362,9 @@ def pace(times, duration):
 def landing_film(flight, times, *, alt, duration=40, hold=2000):
     """Make a film of a flight: the booster on the left, its instruments on the right, and how fast the film runs.
 
+    The booster moves with every frame. The instruments stand for at least `LEGIBLE`; they belong to the time that they
+    show, and in the last frame that is its own.
+
     Parameters
     ----------
     flight : Flight
@@ -364,16 +378,20 @@ def landing_film(flight, times, *, alt, duration=40, hold=2000):
     Animation
     """
     times = _frame_times(times)
-    fig = Figure(figsize=(3.9, 2.5))
+    fig = Figure(figsize=(5.2, 3.4))
     left, right = fig.subplots(1, 2, width_ratios=(0.6, 1))
     scene = booster_scene(left, flight, top=float(np.max(resample(flight, times).h)))
     read = instruments(right, flight)
-    speed = right.text(0, 6, "", va="center", fontweight="bold", color="#0072B2", fontsize=10)
-    words = dict(zip(times.tolist(), pace(times, duration), strict=True))
+    speed = right.text(0, 6, "", va="center", fontweight="bold", color="#0072B2", fontsize=12)
+    frames = np.arange(len(times))
+    late = (frames - frames[-1]) % math.ceil(LEGIBLE / _hundredths("duration", duration))
+    read_at = times[np.maximum(frames - late, 0)]
+    shown = dict(zip(times.tolist(), zip(read_at, pace(times, duration), strict=True), strict=True))
 
     def move(t):
-        speed.set_text(words[float(t)])
-        return [*scene(t), *read(t), speed]
+        at, words = shown[float(t)]
+        speed.set_text(words)
+        return [*scene(t), *read(at), speed]
 
     return film(fig, move, times, alt=alt, duration=duration, hold=hold)
 
@@ -383,12 +401,12 @@ def whole_burn():
     descent = Descent()
     best = best_ignition(descent)
     flight = fly(descent, best.t_ignite)
-    times = np.arange(flight.t[-1], best.t_ignite - 2, -0.16)[::-1]
+    times = np.arange(flight.t[-1], best.t_ignite - 2, -0.08)[::-1]
     alt = (
         f"A booster falls towards the ground at {-best.v_ignite:.0f} m/s, lights its engines "
         f"{best.h_ignite / 1e3:.1f} km above it and stops on it {flight.t[-1] - best.t_ignite:.1f} s later"
     )
-    return landing_film(flight, times, alt=alt, duration=80)
+    return landing_film(flight, times, alt=alt, duration=40)
 
 
 def landing_stills(flight, times, *, top=None):

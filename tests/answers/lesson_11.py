@@ -88,7 +88,9 @@ WRONG = {
     ],
     "11.3": [
         (_ledger, None),
-        (lambda *a: _ledger(*a, share=1.5, limit=1e5), None),
+        (lambda *a: _ledger(*a, share=1.5), None),
+        (lambda *a: _ledger(*a, share=0.5, limit=20.0), None),
+        (lambda *a: _ledger(*a, share=0.5, limit=50.0), None),
         (_rocket, None),
         (_g_load, None),
         (lambda *a: _air(*a, limit=1.0), None),
@@ -110,7 +112,7 @@ RIGHT = {
     ],
     "11.3": [
         _air,
-        lambda *a: _ledger(*a, share=1.5),
+        lambda t_ignite, t, h, v: _ledger(t_ignite, t, h, v, share=0.5, limit=120 * (t[1] - t[0])),
         lambda *a: _air(*a, share=0.5),
         lambda *a: _air(*a, limit=0.02, share=2.0),
         lambda *a: _air(*a, limit=0.1, share=1.0),

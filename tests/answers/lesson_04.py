@@ -65,13 +65,6 @@ def _again_and_again(f, t, h, v, dt, aloud=False):
     return h + dt / 2 * (v + u), u
 
 
-def _midpoint(f, t, h, v, dt):
-    from scipy.optimize import fsolve
-
-    (u,) = fsolve(lambda u: u - v - dt * f(t + dt / 2, h + dt * (v + u[0]) / 4, (v + u[0]) / 2), v, xtol=1e-13)
-    return h + dt * (v + u) / 2, u
-
-
 def _two_halves(f, t, h, v, dt):
     """Half a step of explicit Euler, and half a step of implicit Euler."""
     h, v = integrators.explicit_euler(f, t, h, v, dt / 2)
@@ -100,7 +93,6 @@ WRONG = {
         (lambda r, u: _newton(r, u, near=1e-6), None),
     ],
     "4.3": [
-        (_midpoint, "mean place"),
         (_again_and_again, "answer put in again"),
         (lambda *a: _again_and_again(*a, aloud=True), "answer put in again"),
         (lambda *a: _solved(*a, aloud=False), "gives up in silence"),

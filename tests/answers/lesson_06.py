@@ -31,14 +31,6 @@ def _work(flight):
     return cumulative_trapezoid(-flight.descent.drag(flight.h, flight.v), flight.h, initial=0)
 
 
-def _power(flight):
-    taken = [0.0]
-    power = [-flight.descent.drag(h, v) * v for h, v in zip(flight.h, flight.v, strict=True)]
-    for i in range(1, len(power)):
-        taken.append(taken[-1] + (power[i - 1] + power[i]) / 2 * (flight.t[i] - flight.t[i - 1]))
-    return taken
-
-
 def _weight_by_heights(flight):
     change = cumulative_trapezoid(flight.descent.weight(flight.h, flight.mass), flight.h, initial=0)
     return 0.5 * flight.mass * (flight.v[0] ** 2 - flight.v**2) - change
@@ -84,5 +76,10 @@ RIGHT = {
         lambda h, v, w: descent.drag(h, v - w),
         lambda h, v, w: np.float64(0.25) * (w - v) * abs(w - v) * planet.air_density(h) * math.pi * 1.83**2,
     ],
-    "6.3": [_work, _power, _weight_by_heights, _by_mass_and_radius(lambda p: 6.67e-11 * p.mass)],
+    "6.3": [
+        _work,
+        lambda flight: list(_work(flight)),
+        _weight_by_heights,
+        _by_mass_and_radius(lambda p: 6.67e-11 * p.mass),
+    ],
 }

@@ -75,12 +75,6 @@ def _solved(h, v, a, dt, smallest=0.0, slowest=0.0, late=1.0):
     return 2 * h / divisor if divisor > slowest and 2 * h / divisor <= late * dt else None
 
 
-def _by_all_roots(h, v, a, dt):
-    roots = np.roots([a / 2, v, h])
-    real = sorted(x.real for x in roots if abs(x.imag) < 1e-12 and 0 < x.real <= dt)
-    return real[0] if real else None
-
-
 def _by_search(h, v, a, dt):
     lowest = min(dt, -v / a) if a > 0 > v else 0.0 if a > 0 else dt
     if h + v * lowest + a * lowest**2 / 2 > 0:
@@ -130,5 +124,5 @@ RIGHT = {
         _tooth_of_a_step,
         lambda where, c, b, push, step: float(push * step * (b @ (c > where) - 1 + where)),
     ],
-    "8.3": [_by_search, _by_all_roots, _within(_first_root)],
+    "8.3": [_by_search, _within(_first_root)],
 }

@@ -37,11 +37,6 @@ def _secant(height, early, late, most=10, near=1e-10):
     return b
 
 
-def _table(height, early, late):
-    times = np.linspace(early, late, 12)
-    return times[np.argmin([abs(height(t)) for t in times])]
-
-
 def _illinois(height, early, late):
     a, b, h_a, h_b, side = early, late, height(early), height(late), 0
     c = a
@@ -61,12 +56,6 @@ def _illinois(height, early, late):
     return c
 
 
-def _finds_a_root(height, early, late):
-    from scipy.optimize import root_scalar
-
-    return root_scalar(height, bracket=(early, late), method="toms748", xtol=1e-10).root
-
-
 def _in_an_array(height, early, late):
     t, h = np.array([early, late]), np.array([height(early), height(late)])
     while t.size < 12 and h[-1] != 0 and abs(t[-1] - t[-2]) > 1e-11:
@@ -83,9 +72,7 @@ WRONG = {
         (lambda height, early, late: _bisection(height, early, late, 12), "bisection"),
         (_false_position, "one end never moves"),
         (lambda height, *ends: height(_secant(height, *ends, most=5)), "height returned"),
-        (_table, None),
         (lambda height, early, late: _secant(height, early, late, near=1e-3), "stops too early"),
-        (_finds_a_root, "a library's search"),
         (lambda height, early, late: (early + late) / 2, None),
         (lambda height, early, late: 60.211035517, None),
     ],

@@ -61,14 +61,12 @@ def _g_load(t_ignite, t, h, v):
 WRONG = {
     "11.1": [
         ((25_824, 57.1), None),
-        ((1_375, 0.93), None),
         (("25.8 t", 0.93), None),
         ((25_333, 1.26), None),
         ((25_824, 929), None),
     ],
     "11.2": [
         (lambda t, h, v: np.any(np.abs(_off(t, h, v)) > 300 * np.diff(t) ** 3 + 1e-6), None),
-        (lambda t, h, v: np.any(np.abs(_off(t, h, v)) > 1e4 * np.diff(t) ** 3 + 1e-6), None),
         (lambda t, h, v: np.any(np.abs(np.gradient(h, t) - v) > 5), None),
         (lambda t, h, v: np.any(np.abs(_off(t, h, v)) > 1.0), None),
         (lambda t, h, v: np.any(_off(t, h, v) > 300 * np.diff(t) ** 2), None),
@@ -91,20 +89,17 @@ WRONG = {
         (lambda *a: _ledger(*a, share=1.5), None),
         (lambda *a: _ledger(*a, share=0.5, limit=20.0), None),
         (lambda *a: _ledger(*a, share=0.5, limit=50.0), None),
-        (_rocket, None),
-        (_g_load, None),
         (lambda *a: _air(*a, limit=1.0), None),
         (lambda *a: _air(*a, share=0.1), None),
         (lambda *a: _air(*a, start=True), None),
         (lambda *a: _air(*a, floored=False), None),
-        (lambda t_ignite, t, h, v: np.any(np.diff(v**2 / 2 + 9.81 * h)[t[1:] < t_ignite] > 1), "never an alarm"),
         (lambda t_ignite, t, h, v: np.any(np.diff(v**2 / 2 + 9.81 * h) > 1), None),
         (lambda *a: _g_load(*a) or _rocket(*a), None),
     ],
 }
 
 RIGHT = {
-    "11.1": [(25_824.7, 0.929), (25_800, 0.95), (7.6e6 / 30 / 9.81, 0.93), (np.float64(25_820), np.float64(0.925))],
+    "11.1": [(25_800, 0.95), (7.6e6 / 30 / 9.81, 0.93), (np.float64(25_820), np.float64(0.925))],
     "11.2": [
         _steps,
         _between,
@@ -113,8 +108,7 @@ RIGHT = {
     "11.3": [
         _air,
         lambda t_ignite, t, h, v: _ledger(t_ignite, t, h, v, share=0.5, limit=120 * (t[1] - t[0])),
-        lambda *a: _air(*a, share=0.5),
-        lambda *a: _air(*a, limit=0.02, share=2.0),
+        lambda *a: _air(*a, limit=0.02, share=0.5),
         lambda *a: _air(*a, limit=0.1, share=1.0),
     ],
 }

@@ -48,7 +48,7 @@ def _tables():
     quick = integrate(nine, 14e3, -2300.0, dt=0.01, t_end=10.0, method="explicit_euler")
     hard = integrate(nine, 14e3, -2300.0, dt=0.5, t_end=10.0)
     up = integrate(lambda t, h, v: -9.81, 1.0, 40.0, dt=0.25, t_end=8.0)
-    some, rows = np.union1d([1, 2, 4, *range(0, fine.t.size, 23)], range(3010, 3200)), np.arange(weak.t.size)
+    some, rows = [0, 1, *range(50, quick.t.size, 50)], np.arange(weak.t.size)
     return {
         "a sound run with rows 0.02 s apart": (fine.t, fine.h, fine.v),
         "a run whose v has the wrong sign": (fine.t, fine.h, -fine.v),
@@ -62,7 +62,7 @@ def _tables():
         "a sound run of explicit Euler with rows 0.01 s apart": (quick.t, quick.h, quick.v),
         "a sound run that brakes hard between rows 0.5 s apart": (hard.t, hard.h, hard.v),
         "a sound run that goes up and comes down again": (up.t, up.h, up.v),
-        "a sound run whose rows are not at equal steps": (fine.t[some], fine.h[some], fine.v[some]),
+        "a sound run whose rows are not at equal steps": (quick.t[some], quick.h[some], quick.v[some]),
         "a run whose velocities come half a second late": (fine.t[25:], fine.h[25:], fine.v[:-25]),
         "a run in which one height is wrong by 40 m": (weak.t, weak.h - 40.0 * (rows == 400), weak.v),
         "a run whose velocity is too small by a tenth": (weak.t, weak.h, 0.9 * weak.v),

@@ -76,6 +76,7 @@ WRONG = {
         (lambda t, h, v: abs(_off(t, h, v).sum()) > 500, None),
         (lambda t, h, v: np.any(np.abs(_off(t, h, v)) > 0.05 * np.abs(np.diff(h)) + 0.01), None),
         (lambda t, h, v: np.any(np.abs(_off(t[1] * np.arange(t.size), h, v)) > 300 * t[1] ** 2), None),
+        (lambda t, h, v: np.any(np.abs(_off(t, h, v)) > 300 * (t[1] - t[0]) ** 2), None),
         (lambda t, h, v: np.mean(np.abs(_off(t, h, v)) / np.diff(t) ** 2) > 300, None),
         (lambda t, h, v: bool(np.any(np.diff(h) * v[1:] < 0)), None),
         (lambda t, h, v: bool(np.max(np.abs(np.diff(h) / np.diff(t) - v[1:])) > 150 * np.diff(t)[0]), None),

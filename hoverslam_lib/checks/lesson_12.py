@@ -93,21 +93,21 @@ def throttle_project(law):
         (slice(1, 31), 27, "With errors, and perfect eyes"),
         (slice(31, 91), 58, "With errors, and noise in what it sees"),
     ):
-        commands, outcomes = set(), []
-        for descent, t_ignite, noise in worlds()[which]:
-            flight = fly(descent, 0.0, dt=LOOK, controller=_pilot(law, t_ignite, noise, commands))
-            outcomes.append(flight.outcome)
+        commands = set()
+        outcomes = [
+            fly(descent, 0.0, dt=LOOK, controller=_pilot(law, t_ignite, noise, commands)).outcome
+            for descent, t_ignite, noise in worlds()[which]
+        ]
         soft = outcomes.count(SOFT_LANDING)
         if soft < asked:
             others = ", ".join(f"{outcomes.count(end)} × {end}" for end in sorted({*outcomes} - {SOFT_LANDING}))
             score = f"{what}, {soft} of {len(outcomes)} land softly, {asked} are asked for; {others}."
-            if len({said for said, _ in commands}) == 1:
-                raise Wrong(mistake="constant throttle", score=score)
+            mistake = "the lesson's law" if lesson else None
             if {throttle for _, throttle in commands} == {LOWEST, 1.0}:
-                raise Wrong(mistake="on and off", score=score)
-            if lesson:
-                raise Wrong(mistake="the lesson's law", score=score)
-            raise Wrong(score, nudge=True)
+                mistake = "on and off"
+            if len({said for said, _ in commands}) == 1:
+                mistake = "constant throttle"
+            raise Wrong(score, mistake, nudge=not mistake, score=score)
         yield
 
 

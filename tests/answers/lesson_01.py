@@ -1,4 +1,4 @@
-"""Answers that students give to the exercises of lesson 1."""
+"""Answers that students give to the exercises of lesson 1, beside those that its tables make."""
 
 import numpy as np
 
@@ -22,37 +22,25 @@ def _with_an_index(a, b):
 # exercise: what was answered, and the name of the mistake if it has one
 WRONG = {
     "1.1": [
-        ((2.14, -0.23), "old velocity"),
-        ((2.1797, 0.8636), "m over k"),
         ((2.0949, 0.2959), "root of k over m"),
-        ((2.019, -0.21), "rounded"),
         ((1.2, -5.0), None),
         ((np.nan, -0.212), None),
-        ((2.0612, -0.212), None),
         (("2.0188 m", "-0.212 m/s"), None),
         ((2.0188, None), None),
         ((2.04, ...), None),
         ((..., -0.21), "rounded"),
     ],
     "1.2": [
-        (lambda e, c: np.mean(abs(abs(np.array(e)) - abs(np.array(c)))) / max(abs(np.array(e))), None),
         (lambda e, c: sum(abs(e - c)) / (len(e) - 1) / max(e), "two bugs left"),
-        (lambda e, c: np.sum(e - c) / len(e) / np.max(np.abs(e)), "signed"),
         (mape, "MAPE"),
-        (nmae, "the library's"),
         (lambda e, c: 100 * nmae(e, c), "the library's"),
-        (lambda e, c: np.sum(np.abs(e - c)) / np.sum(np.abs(e)), "mean for amplitude"),
         (lambda e, c: sum(abs(e - c)) / max(e), None),
         (lambda e, c: sum(abs(e - c)), None),
-        (lambda e, c: abs(sum(e - c)) / (len(e) + 1) / max(abs(e)), None),
         (_in_place, "changes its arguments"),
         (lambda e, c: np.abs(e - c) / np.max(np.abs(e)), None),
         (lambda e, c: print(np.mean(np.abs(e - c)) / np.max(np.abs(e))), None),
-        (lambda e, c: np.mean(np.abs(e - c)) / np.ptp(e) * 2, None),
     ],
     "1.3": [
-        (([3.0, 1.0], [3.1, 1.0], [3.0, 1.1]), "not by the MAPE"),
-        (([3.0, 1e-6], [3.1, 1e-6], [3.0, 2e-6]), "out of range"),
         (([3.0, 0.01], [3.2], [3.0, 0.02]), None),
         ((3.0, 3.2, 3.01), None),
         ((np.array(3.0), np.array(3.2), np.array(3.01)), None),
@@ -64,19 +52,13 @@ WRONG = {
 }
 
 RIGHT = {
-    "1.1": [
-        (2.0188, -0.212),
-        (np.float64(2.01880), np.array(-0.2120)),
-        (np.array([2.0188]), -0.21200000000000008),
-    ],
+    "1.1": [(np.float64(2.01880), np.array(-0.2120)), (np.array([2.0188]), -0.21200000000000008)],
     "1.2": [
         _with_an_index,
-        lambda u, w: np.abs(u - w).mean() / np.abs(u).max(),
         lambda u, w: np.linalg.norm(w - u, 1) / (u.size * np.linalg.norm(u, np.inf)),
         lambda u, w: np.array([np.mean(np.abs((w - u) / max(np.abs(u))))]),
     ],
     "1.3": [
-        ([3.0, 0.01], [3.2, 0.01], [3.0, 0.02]),
         ((-3.0, 0.01), (-2.7, 0.01), (-3.0, -0.01)),
         (np.array([3.0, 2.0, 0.01]), np.array([3.3, 2.0, 0.01]), np.array([3.0, 2.0, 0.025])),
         ([3, 0.01], [2, 0.01], [3, 0.06]),

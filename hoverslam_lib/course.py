@@ -4,8 +4,8 @@
 checks what they store. ``python -m hoverslam_lib.course copy FOLDER`` makes a student's working copy, without outputs,
 that git leaves alone, or goes on with the one that is there; with ``--lesson 3`` it puts a fresh lesson beside the
 edited one, with ``--for-teaching`` it keeps the outputs and adds what instructors need, with ``--withhold-solutions``
-``checks.show_solution`` says there to ask the instructor. ``python -m hoverslam_lib.course print FOLDER [LESSON…]``
-writes pages to print or to read without a network.
+``checks.show_solution`` says there to ask the instructor. ``python -m hoverslam_lib.course book FOLDER`` makes pages
+that any browser shows, without a network and without Python, and whose figures move.
 """
 
 import argparse
@@ -294,39 +294,6 @@ def _write(target, content):
         part.unlink(missing_ok=True)
 
 
-def page(path):
-    """A stored notebook as one HTML page without scripts or outside files: formulas are MathML, pictures are inside.
-
-    Parameters
-    ----------
-    path : Path
-
-    Returns
-    -------
-    str
-    """
-    import nbformat
-    from latex2mathml.converter import convert
-    from nbconvert import HTMLExporter
-
-    formulas = []
-
-    def set_aside(formula):
-        display, inline = formula.groups()
-        formulas.append(convert((display or inline).strip(), display="block" if display else "inline"))
-        return f"formula-{len(formulas) - 1}-"
-
-    notebook = nbformat.read(path, as_version=4)
-    for cell in notebook.cells:
-        if cell.cell_type == "markdown":  # the exporter would take the tags of MathML apart
-            cell.source = re.sub(r"\$\$(.+?)\$\$|\$(.+?)\$", set_aside, cell.source, flags=re.DOTALL)
-            cell.source = re.sub(r"\]\((\w+)\.ipynb", r"](\1.html", cell.source)
-    resources = {"metadata": {"name": path.stem, "path": str(path.parent)}}
-    html, _ = HTMLExporter(embed_images=True, template_name="lab").from_notebook_node(notebook, resources)
-    html = re.sub(r"<script\b.*?</script>", "", html, flags=re.DOTALL)
-    return re.sub(r"formula-(\d+)-", lambda place: formulas[int(place.group(1))], html)
-
-
 def main(arguments=None):
     """Command line: see the module's docstring. Returns the exit code."""
     parser = argparse.ArgumentParser(prog="python -m hoverslam_lib.course", description="The life of a notebook.")
@@ -338,14 +305,15 @@ def main(arguments=None):
     copying.add_argument("--lesson", help="number or name: a fresh copy of this lesson beside the edited one")
     copying.add_argument("--for-teaching", action="store_true", help="with outputs, guide and mission control")
     copying.add_argument("--withhold-solutions", action="store_true", help="show_solution says to ask the instructor")
-    printing = commands.add_parser("print", help="write lessons as pages to print or to read without a network")
-    printing.add_argument("folder")
-    printing.add_argument("lesson", nargs="*", help="number or name; all lessons if left out")
+    booking = commands.add_parser("book", help="make pages for any browser, whose figures move without Python")
+    booking.add_argument("folder")
+    booking.add_argument("--for-students", action="store_true", help="without the guide and mission control")
+    booking.add_argument("--open", action="store_true", help="show the answers to the predictions at once")
     options = parser.parse_args(arguments)
     try:
         if options.command == "refresh":
             return _refresh_all(options.lesson)
-        return _copy_all(options) if options.command == "copy" else _print_all(options)
+        return _copy_all(options) if options.command == "copy" else _make_book(options)
     except ValueError as error:
         print(error, file=sys.stderr)
     except OSError as error:
@@ -386,14 +354,14 @@ def _size(path):
     return f"{len(code)} code cells, median {median:.0f} lines; {share:.1f} words of text to one of code"
 
 
-def _print_all(options):
-    folder = Path(options.folder)
-    folder.mkdir(parents=True, exist_ok=True)
-    paths = lessons(options.lesson)
-    for n, path in enumerate(paths, start=1):
-        target = folder / f"{path.stem}.html"
-        target.write_text(page(path), encoding="utf-8")
-        print(f"[{n}/{len(paths)}] wrote {target}")
+def _make_book(options):
+    try:
+        from hoverslam_lib import book
+
+        book.build(lessons(), options.folder, for_students=options.for_students, unfold=options.open)
+    except ModuleNotFoundError as error:
+        raise ValueError(f"{error.name} is missing: run pip install -e '.[book]' in {NOTEBOOKS.parent}") from None
+    print(f"wrote {Path(options.folder, 'index.html')}")
     return 0
 
 

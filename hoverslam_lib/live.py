@@ -124,13 +124,16 @@ class Live:
         ``update(**values)`` gets the value of every control by its name, see `values`, moves the artists, and returns
         a sentence that says with numbers what the picture shows. If it raises, the message is shown in place of the
         sentence, and nothing that moves is drawn.
+    recorded : dict, optional
+        What also moves on a page without a kernel, see `recording`: by the name of a control the list of its
+        positions, or None for places spread evenly over it. Left out: the first two controls, dt among them.
     **controls : ipywidgets.Widget
         Any with a value; ``description`` is its label and should have the unit.
     """
 
-    def __init__(self, fig, update, **controls):
+    def __init__(self, fig, update, *, recorded=None, **controls):
         plt.close(fig)
-        self.fig, self.update, self.controls = fig, update, controls
+        self.fig, self.update, self.controls, self.recorded = fig, update, controls, recorded
         self._canvas = FigureCanvasAgg(fig)
         self._canvas.draw()
         fig.set_layout_engine("none")
@@ -154,7 +157,16 @@ class Live:
         changes the first decimal of a published run. So a float slider's value is its place `on_grid`; of a
         logarithmic slider that holds for the exponent.
         """
-        return {name: _value(control) for name, control in self.controls.items()}
+        return {name: value_of(control) for name, control in self.controls.items()}
+
+    def pixels(self, moving=True):
+        """The picture as it stands, or the ground alone on which things move: uint8, shape (height, width, 4)."""
+        if moving:
+            return np.array(self._canvas.buffer_rgba())
+        self._canvas.restore_region(self._background)
+        ground = np.array(self._canvas.buffer_rgba())
+        self._follow()
+        return ground
 
     def set(self, **values):
         """Give controls new values and draw once."""
@@ -262,7 +274,8 @@ def _length(metres):
     return f"{metres / 1e3:.2f} km" if metres >= 999.5 else f"{metres:.3g} m"
 
 
-def _value(control):
+def value_of(control):
+    """The value of a control as the decimal number it stands for, see `Live.values`."""
     if isinstance(control, FloatLogSlider):
         return control.base ** on_grid(math.log(control.value, control.base), control)
     if isinstance(control, FloatSlider):

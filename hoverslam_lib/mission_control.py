@@ -55,6 +55,18 @@ START = {
 }
 PAPERS_LANDING = START | {"t_ignite": 35.88, "dt": 0.02, "methods": ("rkn4",), "faults": True}
 
+# what moves in the book: from the fall to the crash, dense where the two landings are, with both equations
+RECORDED = {
+    "t_ignite": [
+        *(0.0, 10.0, 20.0, 25.0, 30.0, 33.0, 35.0, 35.5, 35.8, 35.84, 35.86, 35.87, 35.88, 35.89, 35.9, 35.92, 36.0),
+        *(36.5, 38.0, 40.0, 45.0, 50.0, 55.0, 57.0, 58.0, 59.0, 59.5, 60.0, 60.1, 60.15, 60.19, 60.2, 60.21, 60.211),
+        *(60.22, 60.25, 60.3, 60.4, 60.6, 61.0, 61.5, 62.0, 63.0, 64.0, 65.0, 66.0, 67.0, 70.0, 80.0),
+    ],
+    "dt": [0.1, 0.02, 0.01],
+    "faults": [False, True],
+    "methods": [("rkn4",)],  # the paper's own
+}
+
 # name of the axis, its limits, and what of a trial is drawn on it
 PANELS = (
     ("height [km]", (-5, 160), lambda trial: trial["h"] / 1e3),
@@ -158,7 +170,7 @@ class MissionControl:
             control.value = START[name]
             control.layout.width = "100%"
         self.slider = self._slider(controls["t_ignite"])
-        self.live = Live(self._figure(), self._fly, **controls)
+        self.live = Live(self._figure(), self._fly, recorded=RECORDED, **controls)
         self.table, self.play = HTML(), Play(100, min=0, max=100, step=2, interval=120, layout=Layout(display="none"))
         jslink((self.play, "value"), (controls["moment"], "value"))
         self.live.widget = self._layout(controls)

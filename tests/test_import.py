@@ -25,12 +25,14 @@ ORDER = [
     "plotting",
     "animation",
     "live",
+    "recording",
     "mission_control",
     "checks",
+    "book",
     "course",
 ]
 MODULES = {path.stem: path for path in FOLDER.glob("*.py") if path.stem != "__init__"}
-MODULES |= {f"checks.{path.stem}": path for path in FOLDER.glob("checks/*.py")}
+MODULES |= {f"{folder}.{path.stem}": path for folder in ("book", "checks") for path in FOLDER.glob(f"{folder}/*.py")}
 
 
 def imported_from_the_library(path):

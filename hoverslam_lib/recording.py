@@ -1,0 +1,200 @@
+"""What a live figure shows at each of its positions, for a page that has no kernel."""
+
+import base64
+import io
+import itertools
+import json
+import math
+import re
+
+import numpy as np
+import traitlets
+from ipywidgets import Checkbox, FloatLogSlider, FloatSlider, IntSlider
+from PIL import Image
+
+from hoverslam_lib.live import on_grid, value_of
+
+MOST_POSITIONS = 300
+"""Of one figure: each costs its page some kilobytes."""
+
+CLEAR = 31
+"""The place in a layer's palette that lets the ground through."""
+
+
+def positions(live):
+    """The values that each control takes on a page without a kernel, see `recorded` of `Live`.
+
+    Parameters
+    ----------
+    live : Live
+
+    Returns
+    -------
+    dict of str to list
+        By the name of the control.
+
+    Raises
+    ------
+    ValueError
+        If there is no such control, one has no such place, or there are more than `MOST_POSITIONS`.
+    """
+    wanted = _first_two(live.controls) if live.recorded is None else live.recorded
+    unknown = [name for name in wanted if name not in live.controls]
+    if unknown:
+        raise ValueError(f"recorded: there is no control {unknown[0]!r}; there are {', '.join(live.controls)}")
+    found = {
+        name: _places(live.controls[name]) if given is None else [_place(live.controls[name], v) for v in given]
+        for name, given in wanted.items()
+    }
+    free = sorted((name for name, given in wanted.items() if given is None), key=lambda name: len(found[name]))
+    for n, name in enumerate(free, start=1):
+        others = math.prod(len(found[other]) for other in wanted if other not in free[n - 1 :])
+        found[name] = _thinned(live.controls[name], int((MOST_POSITIONS / others) ** (1 / (len(free) - n + 1))))
+    number = math.prod(len(places) for places in found.values())
+    if number > MOST_POSITIONS:
+        raise ValueError(f"recorded: {number} positions in all; at most {MOST_POSITIONS} are kept")
+    return found
+
+
+def frames(live):
+    """Put a live figure through all its positions, the last control fastest; it ends where it was.
+
+    Yields
+    ------
+    sentence : str
+    pixels : ndarray of uint8, shape (height, width, 4)
+        As `Live` shows them.
+    """
+    places, start = positions(live), {name: control.value for name, control in live.controls.items()}
+    try:
+        for values in itertools.product(*places.values()):
+            live.set(**dict(zip(places, values, strict=True)))
+            yield live.text, live.pixels()
+    finally:
+        live.set(**start)
+
+
+def record(live):
+    """A live figure as a page without a kernel keeps it, ready for JSON.
+
+    Returns
+    -------
+    dict
+        "width", "height" [px]; "controls", a list of dicts with "name", "unit", "shown" (the positions as text),
+        "start" (which of them comes first: that of the figure if it is among them) and "checkbox"; "kept", a sentence
+        for each control that does not move there; "ground", a PNG, and "layers", PNGs to lie on it, all as base64;
+        "sentences", one a layer.
+    """
+    places, ground = positions(live), live.pixels(moving=False)
+    sentences, layers = zip(*((said, layer(now, ground)) for said, now in frames(live)), strict=True)
+    still = {name: value_of(control) for name, control in live.controls.items() if len(places.get(name, [0])) == 1}
+    still |= {name: places[name][0] for name in places if name in still}
+    moving = {name: values for name, values in places.items() if name not in still}
+    height, width = ground.shape[:2]
+    return {
+        "width": width,
+        "height": height,
+        "controls": [_control(live.controls[name], values) for name, values in moving.items()],
+        "kept": [f"{_name(live.controls[n])} stays at {_shown(live.controls[n], value)}" for n, value in still.items()],
+        "ground": _png(Image.fromarray(ground).convert("RGB").quantize(256, dither=Image.Dither.NONE)),
+        "layers": layers,
+        "sentences": sentences,
+    }
+
+
+def layer(now, ground):
+    """A PNG with what differs from the ground, in few colours, the rest transparent, as base64."""
+    moves = np.any(now != ground, axis=-1)
+    colours = np.full(now.shape[:2], CLEAR, dtype=np.uint8)
+    palette = np.zeros((CLEAR + 1, 3), dtype=np.uint8)
+    if moves.any():
+        few = Image.fromarray(now[moves][None, :, :3]).quantize(CLEAR, dither=Image.Dither.NONE)
+        colours[moves] = np.asarray(few)[0]
+        found = np.reshape(few.getpalette(), (-1, 3))[:CLEAR]
+        palette[: len(found)] = found
+    image = Image.fromarray(colours)
+    image.putpalette(palette.tobytes())
+    return _png(image, transparency=CLEAR)
+
+
+def script(name, recorded):
+    """A recording as a script that a page opened from a folder may load: ``fetch`` may not."""
+    return f"hoverslam.recordings[{json.dumps(name)}] = {json.dumps(recorded, ensure_ascii=False)};\n"
+
+
+def _png(image, **options):
+    packed = io.BytesIO()
+    image.save(packed, format="png", optimize=True, **options)
+    return base64.b64encode(packed.getvalue()).decode("ascii")
+
+
+def _first_two(controls):
+    names = list(controls)[:2]
+    if "dt" in controls and "dt" not in names:
+        names[-1] = "dt"
+    return dict.fromkeys(names)
+
+
+def _places(control):
+    """All places that a control has of its own."""
+    if hasattr(control, "options"):
+        return [option[1] if isinstance(option, tuple) else option for option in control.options]
+    if isinstance(control, Checkbox):
+        return [False, True]
+    if isinstance(control, (FloatSlider, FloatLogSlider, IntSlider)) and control.step:
+        steps = range(int((control.max - control.min) / control.step + 1e-9) + 1)
+        places = [on_grid(control.min + n * control.step, control) for n in steps]
+        return [control.base**place for place in places] if isinstance(control, FloatLogSlider) else places
+    raise ValueError(f"recorded: name the positions of {control.description!r}, which has no steps of its own")
+
+
+def _place(control, value):
+    """The value that a control has once it was put there, if it takes it."""
+    before = control.value
+    try:
+        control.value = value
+        found = value_of(control)
+    except traitlets.TraitError as error:
+        raise ValueError(f"recorded: {control.description!r} cannot be {value!r}: {error}") from None
+    finally:
+        control.value = before
+    if found != value:
+        raise ValueError(f"recorded: {control.description!r} has no place {value!r}; the nearest is {found!r}")
+    return found
+
+
+def _thinned(control, most):
+    """At most so many places of a control, spread evenly, with the present one among them."""
+    places, present = _places(control), value_of(control)
+    if len(places) > most:
+        places = [places[round(n)] for n in np.linspace(0, len(places) - 1, max(most, 2))]
+    if present not in places:
+        places[min(range(len(places)), key=lambda n: abs(places[n] - present))] = present
+    return places
+
+
+def _control(control, places):
+    shown = [_shown(control, place) for place in places]
+    unit = re.search(r"\[(.+)\]$", control.description)
+    return {
+        "name": _name(control),
+        "unit": unit[1] if unit else "",
+        "shown": shown,
+        "start": places.index(value_of(control)) if value_of(control) in places else 0,
+        "checkbox": isinstance(control, Checkbox),
+    }
+
+
+def _name(control):
+    return re.sub(r"\s*\[.+\]$", "", control.description or control.tooltip or "")
+
+
+def _shown(control, value):
+    """A value as its control shows it."""
+    if hasattr(control, "options"):
+        labels = [option if isinstance(option, tuple) else (option, option) for option in control.options]
+        wanted = value if isinstance(value, tuple) else (value,)
+        return ", ".join(str(label) for label, known in labels if known in wanted)
+    if isinstance(value, bool):
+        return "on" if value else "off"
+    return format(value, getattr(control, "readout_format", "") or "g")

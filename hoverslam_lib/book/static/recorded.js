@@ -92,10 +92,13 @@ window.hoverslam = { recordings: {} };
             }
         }, { rootMargin: "800px" });
         for (const figure of document.querySelectorAll("[data-recording]")) near.observe(figure);
-        // what scrolls is reached by key too
-        for (const part of document.querySelectorAll("article .output, article pre, article .pst-scrollable-table-container"))
-            if (part.scrollWidth > part.clientWidth) part.tabIndex = 0;
         for (const film of document.querySelectorAll("img[src^='data:image/gif'], img[src$='.gif']")) pausable(film);
+    });
+    // what scrolls is reached by key too; formulas have their width late
+    window.addEventListener("load", async () => {
+        await window.MathJax?.startup?.promise;
+        for (const part of document.querySelectorAll("article .output, article pre, article div, article mjx-container"))
+            if (part.scrollWidth > part.clientWidth && getComputedStyle(part).overflowX === "auto") part.tabIndex = 0;
     });
     window.addEventListener("beforeprint", () => {
         for (const folded of document.querySelectorAll("details")) folded.open = true;

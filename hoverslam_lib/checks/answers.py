@@ -12,6 +12,10 @@ import numpy as np
 from hoverslam_lib.checks.feedback import Wrong, text_of
 
 
+class Words(str):
+    """What a probe says of an answer, in words: shown as they are, and never asked to be a number."""
+
+
 def number(value, name="the result"):
     """A finite float, or `Wrong` with what it is instead."""
     if isinstance(value, float) and math.isfinite(value):  # as nearly always: a flight asks 300 times
@@ -33,10 +37,10 @@ def array(value, shape, name="the result", wanted=None):
     start = name if name.startswith("my_") else name[0].upper() + name[1:]
     if fits:
         bad = made[~np.isfinite(made)][0]
-        raise Wrong(f"{start} {'holds' if shape else 'is'} {bad}, which is not a finite number.")
+        raise Wrong(f"{start} {'holds' if shape else 'is'} {bad}, which is not a finite number.", nudge=True)
     it = f"is {text_of(value, repr, 40)}" if made is None else f"holds {_amount(made.shape)}"
     end = ": is a `return` missing?" if value is None and start != name else "."
-    raise Wrong(f"{start} should be {wanted or _amount(shape)}; it {it}{end}")
+    raise Wrong(f"{start} should be {wanted or _amount(shape)}; it {it}{end}", nudge=made is not None)
 
 
 def _amount(shape):
@@ -73,6 +77,8 @@ def distance(a, b, rtol, atol):
 
 def digits(got):
     """An answer as the student is shown it."""
+    if isinstance(got, Words):
+        return str(got)
     values = numeric(got)
     if values is None:
         return text_of(got, repr, 40)

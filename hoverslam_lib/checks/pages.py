@@ -19,12 +19,12 @@ from markdown_it.tree import SyntaxTreeNode
 
 import hoverslam_lib
 from hoverslam_lib.checks import record
-from hoverslam_lib.checks.answers import told_apart, untouched
+from hoverslam_lib.checks.answers import Words, told_apart, untouched
 from hoverslam_lib.checks.feedback import Feedback, judged
 from hoverslam_lib.checks.judging import Cases, Numbers, Value
 
 NAMES = {name: getattr(hoverslam_lib, name) for name in hoverslam_lib.__all__}
-NAMES |= {"np": np, "math": math, "Value": Value}
+NAMES |= {"np": np, "math": math, "Value": Value, "Words": Words}
 """What the Python of every page may use."""
 HEADER = ("mistake", "change", "hint")
 

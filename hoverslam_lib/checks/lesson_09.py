@@ -1,8 +1,7 @@
 """Beside the page of lesson 9: a forger's two flights, and a search that is watched."""
 
 import sys
-from contextlib import suppress
-from functools import cache, lru_cache, partial
+from functools import cache, partial
 from math import exp
 
 import numpy as np
@@ -20,12 +19,15 @@ def forged(landing_dt, crash_dt):
     """Judge two step sizes by their flights."""
     try:
         yield from each([partial(_lands, landing_dt), partial(_crashes, crash_dt)])
-    except Wrong as wrong:
-        with suppress(Wrong):
+    except Wrong:
+        try:
             _lands(crash_dt)
             _crashes(landing_dt)
-            wrong = Wrong(mistake="swapped")
-        raise wrong from None
+        except Wrong:
+            pass
+        else:
+            raise Wrong(mistake="swapped") from None
+        raise
 
 
 forged.tests = 2
@@ -37,12 +39,7 @@ def _flown(dt, name):
         raise Wrong(mistake="milliseconds", about=name, dt=dt)
     if not 0.01 <= dt <= 0.03:
         raise Wrong(f"A step of {dt:g} s is not between 0.01 s and 0.03 s.", about=name)
-    return dt, _run(dt)
-
-
-@lru_cache(4)
-def _run(dt):
-    return published.fly(35.87, dt=dt)
+    return dt, published.fly(35.87, dt=dt)
 
 
 def _lands(dt, name="my_landing_dt"):
@@ -58,8 +55,7 @@ def _crashes(dt, name="my_crash_dt"):
     dt, run = _flown(dt, name)
     fastest = run.v.max()
     if fastest > SLOWEST:
-        mistake = "no crash" if fastest >= 0 else "not hard enough"
-        raise Wrong(mistake=mistake, nudge=True, about=name, dt=dt, v=fastest)
+        raise Wrong(mistake="no crash" if fastest >= 0 else "not hard enough", nudge=True, about=name, dt=dt, v=fastest)
 
 
 @cache

@@ -87,15 +87,15 @@ class Exercise:
         """That of the mistake, or what was found; if asked for, with the next general one, unless nothing is new."""
         named = {mistake.name: mistake.hint for mistake in self.mistakes}
         hint = named[wrong.mistake].format(**wrong.values) if wrong.mistake in named else wrong.what
-        if not wrong.nudge:
+        # one that begins with an answer's name is for that answer only
+        split = [re.fullmatch(r"(?:`(my_\w+)`:? )?(.*)", general).groups() for general in self.hints]
+        fitting = [general for about, general in split if about in (None, wrong.about)]
+        if not wrong.nudge or not fitting:
             return hint
         told = [told_apart(answer) for name, answer in given.items() if wrong.about in (None, name)]
         tries = self.tries[wrong.about]
         if tries[-1:] != [told]:
             tries.append(told)
-        # one that begins with an answer's name is for that answer only
-        split = [re.fullmatch(r"(?:`(my_\w+)`:? )?(.*)", general).groups() for general in self.hints]
-        fitting = [general for about, general in split if about in (None, wrong.about)]
         return f"{hint} {fitting[min(len(tries), len(fitting)) - 1]}"
 
     @cached_property

@@ -135,7 +135,7 @@ def raised(error):
     if "for ^" in text or "bitwise_xor" in text:
         return f"In Python a power is written **: there is a ^{line}."
     if "truth value of an array" in text:
-        return f"An `if` asks an array for one True or False{line}. An array of them picks rows, as in t[t > 0]."
+        return f"An array is asked for one True or False, as by an `if`{line}. Many of them pick rows: t[t > 0]."
     return f"Your answer raised {type(error).__name__}{f': {text}' if text else ''}{line}."
 
 

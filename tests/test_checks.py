@@ -342,7 +342,7 @@ def never_ends_and_catches(x):
 BEHAVIOUR = {
     "raises": (raises, r"raised ValueError: the message of the student in line \d+ of its cell"),
     "calls itself": (calls_itself, "calls itself"),
-    "asks an array": (lambda x: x if np.array([x, 0.0]) > 0 else 0, r"asked for one True or False, .* in line \d+ of its"),
+    "asks an array": (lambda x: x if np.array([x, 0.0]) > 0 else 0, r"one True or False, .* in line \d+ of its"),
     "leaves": (lambda x: sys.exit(3), "raised SystemExit"),
     "None": (lambda x: print(x), "return"),
     "a string": (lambda x: "2.0 m", "should be one number; it is '2.0 m'"),

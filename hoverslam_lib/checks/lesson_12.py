@@ -55,7 +55,7 @@ def worlds():
 
 
 def _midpoint(f, t, h, v, dt):
-    """Half the price of Runge-Kutta 4; in steps of `LOOK` it made no difference to the outcomes of any law tried."""
+    """Half the price of Runge-Kutta 4; in steps of `LOOK` as many land softly, with every law tried."""
     a = f(t, h, v)
     a = f(t + dt / 2, h + dt / 2 * v, v + dt / 2 * a)
     return h + dt * (v + dt / 2 * a), v + dt * a

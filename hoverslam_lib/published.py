@@ -60,10 +60,10 @@ def _members(faults):
     return faults
 
 
-def _burning_and_mass(t, t_ignite, faults):
-    """Does the engine push at t, and what is the mass [kg] then?"""
+def _burning_and_mass(t, t_ignite, endless):
+    """Does the engine push at t, and what is the mass [kg] then? `endless`: the tank never empties."""
     burn_time = t - t_ignite if t > t_ignite else 0
-    if Fault.TANK_NEVER_EMPTY not in faults and burn_time >= FALCON_9.burn_duration:
+    if not endless and burn_time >= FALCON_9.burn_duration:
         return False, FALCON_9.dry_mass
     return t > t_ignite, FALCON_9.dry_mass + (FALCON_9.propellant_mass - FALCON_9.burn_rate * burn_time)
 
@@ -83,12 +83,13 @@ def acceleration(t_ignite, faults=ALL_FAULTS):
     thrust = 7.6e3 if Fault.THRUST_IN_KILONEWTONS in faults else booster.thrust
     if Fault.THRUST_SUBTRACTED in faults:
         thrust = -thrust
-    always_up = Fault.DRAG_ALWAYS_UP in faults
+    always_up, endless = Fault.DRAG_ALWAYS_UP in faults, Fault.TANK_NEVER_EMPTY in faults
+    coefficient, area = booster.drag_coefficient, booster.area
     t_ignite = _validate.number("t_ignite", t_ignite, "s", least=0)
 
     def f(t, h, v):
-        burning, mass = _burning_and_mass(t, t_ignite, faults)
-        drag = (1 / (2 * mass)) * (_air_density(h) * booster.drag_coefficient * booster.area * v**2)
+        burning, mass = _burning_and_mass(t, t_ignite, endless)
+        drag = (1 / (2 * mass)) * (_air_density(h) * coefficient * area * v**2)
         if not always_up and v > 0:
             drag = -drag
         total = -EARTH.gravity(h) + drag
@@ -133,7 +134,8 @@ def fly(t_ignite, *, dt, method="rkn4", faults=ALL_FAULTS):
             break
         rows.append((t, h, v))
     t, h, v = (np.array(column) for column in zip(*rows, strict=True))
-    return PublishedRun(t, h, v, np.array([_burning_and_mass(moment, t_ignite, faults)[1] for moment in t]))
+    endless = Fault.TANK_NEVER_EMPTY in faults
+    return PublishedRun(t, h, v, np.array([_burning_and_mass(moment, t_ignite, endless)[1] for moment in t]))
 
 
 def listed(run, *, at_rest=False):

@@ -342,6 +342,7 @@ def never_ends_and_catches(x):
 BEHAVIOUR = {
     "raises": (raises, r"raised ValueError: the message of the student in line \d+ of its cell"),
     "calls itself": (calls_itself, "calls itself"),
+    "asks an array": (lambda x: x if np.array([x, 0.0]) > 0 else 0, r"one True or False, .* in line \d+ of its"),
     "leaves": (lambda x: sys.exit(3), "raised SystemExit"),
     "None": (lambda x: print(x), "return"),
     "a string": (lambda x: "2.0 m", "should be one number; it is '2.0 m'"),
@@ -505,6 +506,29 @@ def test_one_answer_of_several_is_judged_while_others_are_open():
     assert checks.mist(..., 6).mistake == "one step short"
     assert checks.mist(100.0, ...).mistake == "slowest droplet"
     assert checks.mist(..., ...).text == OPEN
+
+
+def test_one_answer_of_several_does_not_spoil_the_score_of_the_others():
+    for wrong in (None, "668", math.nan, 300.0):
+        assert checks.terminal_predictions(wrong, 667.7, 11.64).passed == 2, wrong
+        assert checks.terminal_predictions(279.3, wrong, 11.64).passed == 2, wrong
+    assert checks.forged(None, 0.014).passed == checks.forged(0.016, "0.014").passed == 1
+    assert "should be one number; it is None." in checks.forged(0.016, None).text
+    assert checks.braking(15.9, 17).text.startswith(
+        "✘ 1 of 2 — Not right by our ledger: 17 is close, but not within 15 %."
+    )
+
+
+def test_words_of_a_probe_are_not_called_a_wrong_number():
+    for right, got in ((0.5, "None, no crash"), ((1.0, 2.0), "no end")):
+        what = judging.unlike(judging.Words(got), right, "here").what
+        assert what == f"Not right here: it gives {got}."
+    assert "it is 'no end'" in judging.unlike("no end", 0.5, "here").what
+
+
+def test_half_of_a_pair_that_is_right_is_told():
+    assert "only the second of the two is right" in judging.unlike((3.0, 2.0), (1.0, 2.0), "here").what
+    assert "only" not in judging.unlike((3.0, 3.0), (1.0, 2.0), "here").what
 
 
 def test_mistake_that_never_ends_only_costs_its_time(tmp_path, monkeypatch):

@@ -27,7 +27,7 @@ from ipywidgets import (
 from PIL import Image
 from scipy.optimize import brentq
 
-from hoverslam_lib import FALCON_9, Descent, FreeFall, course, fly, live, published
+from hoverslam_lib import FALCON_9, Descent, FreeFall, course, fly, live, published, recording
 from hoverslam_lib.live import Live, on_grid, verdict
 
 POSITIONS = int(os.environ.get("LIVE_POSITIONS", "100"))
@@ -343,8 +343,10 @@ def check(made):
     assert any(digit in made.text for digit in "0123456789") or made.text.startswith("Not possible")
 
 
-def test_notebook_has_a_live_figure(lesson):
+def test_notebook_has_a_live_figure_with_places_for_the_book(lesson):
     assert lesson
+    for made in lesson:
+        assert recording.positions(made)
 
 
 def test_every_corner_and_many_positions(lesson):

@@ -12,8 +12,14 @@ import numpy as np
 from hoverslam_lib.checks.feedback import Wrong, text_of
 
 
+class Words(str):
+    """What a probe says of an answer, in words: shown as they are, and never asked to be a number."""
+
+
 def number(value, name="the result"):
     """A finite float, or `Wrong` with what it is instead."""
+    if isinstance(value, float) and math.isfinite(value):  # as nearly always: a flight asks 300 times
+        return float(value)
     return array(value, (), name).item()
 
 
@@ -28,13 +34,16 @@ def array(value, shape, name="the result", wanted=None):
     fits = made is not None and (made.shape == tuple(shape) or (made.size == 1 and shape == ()))
     if fits and np.isfinite(made).all():
         return made
-    start = name if name.startswith("my_") else name[0].upper() + name[1:]
+    about = name if name.startswith("my_") else None
+    start = about or name[0].upper() + name[1:]
     if fits:
         bad = made[~np.isfinite(made)][0]
-        raise Wrong(f"{start} {'holds' if shape else 'is'} {bad}, which is not a finite number.")
+        said = f"{start} {'holds' if shape else 'is'} {bad}, which is not a finite number."
+        raise Wrong(said, nudge=True, about=about)
     it = f"is {text_of(value, repr, 40)}" if made is None else f"holds {_amount(made.shape)}"
     end = ": is a `return` missing?" if value is None and start != name else "."
-    raise Wrong(f"{start} should be {wanted or _amount(shape)}; it {it}{end}")
+    other = made is not None and not wanted and 0 < made.ndim == len(shape)  # numbers, but so many more or fewer
+    raise Wrong(f"{start} should be {wanted or _amount(shape)}; it {it}{end}", nudge=other)
 
 
 def _amount(shape):
@@ -71,6 +80,8 @@ def distance(a, b, rtol, atol):
 
 def digits(got):
     """An answer as the student is shown it."""
+    if isinstance(got, Words):
+        return str(got)
     values = numeric(got)
     if values is None:
         return text_of(got, repr, 40)

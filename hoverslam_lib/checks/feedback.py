@@ -84,6 +84,20 @@ class Feedback(Page):
         return f'<div role="status" style="{border}">{html.escape(self.text)}</div>'
 
 
+def each(tests):
+    """Yield for each of the tests that passes, then raise the first `Wrong`: one answer does not hide the others."""
+    wrong = []
+    for test in tests:
+        try:
+            test()
+        except Wrong as found:
+            wrong.append(found)
+        else:
+            yield
+    if wrong:
+        raise wrong[0]
+
+
 def judged(judge, answers):
     """How many tests are passed, and a `Wrong` or None, whatever the answers do; only *Interrupt* gets through.
 
@@ -120,6 +134,8 @@ def raised(error):
     line, text = f" in line {own[-1]} of its cell" if own else "", text_of(error)
     if "for ^" in text or "bitwise_xor" in text:
         return f"In Python a power is written **: there is a ^{line}."
+    if "truth value of an array" in text:
+        return f"An array is asked for one True or False, as by an `if`{line}. Many of them pick rows: t[t > 0]."
     return f"Your answer raised {type(error).__name__}{f': {text}' if text else ''}{line}."
 
 

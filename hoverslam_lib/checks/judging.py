@@ -3,13 +3,13 @@
 import inspect
 import re
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from operator import itemgetter
 
 import numpy as np
 
-from hoverslam_lib.checks.answers import array, digits, distance, number, numeric, pair, repeatable, takes
-from hoverslam_lib.checks.feedback import Wrong, raised
+from hoverslam_lib.checks.answers import Words, array, digits, distance, number, numeric, pair, repeatable, takes
+from hoverslam_lib.checks.feedback import Wrong, each, raised
 
 
 @dataclass(frozen=True)
@@ -32,13 +32,15 @@ class Numbers:
         self.values, self.right, self.mistakes, self.tests = values, right, mistakes, len(values)
 
     def __call__(self, *answers):
-        given = zip(self.values, answers, strict=True)
-        got = {name: number(answer, name) for name, answer in given if answer is not ...}
-        for name in got:
-            off = self._off(name, got[name], self.right[name])
-            if off > 1:
-                raise self._wrong(name, got, off)
-            yield
+        given = {name: answer for name, answer in zip(self.values, answers, strict=True) if answer is not ...}
+        made = {name: numeric(answer) for name, answer in given.items()}
+        got = {name: one.item() for name, one in made.items() if one is not None and one.size == 1}
+        yield from each(partial(self._test, name, given[name], got) for name in given)
+
+    def _test(self, name, answer, got):
+        off = self._off(name, number(answer, name), self.right[name])
+        if off > 1:
+            raise self._wrong(name, got, off)
 
     def _off(self, name, a, b):
         return distance(a, b, self.values[name].rtol, self.values[name].atol)
@@ -59,7 +61,8 @@ class Numbers:
             return Wrong(mistake=mistake, about=name)
         what = f"Not right {value.where}: you have {digits(got[name])}."
         if value.rtol and off <= min(5, 0.3 / value.rtol):  # 60 % off is not near
-            what = f"Near {value.where}, but more than {100 * value.rtol:g} % off: have you rounded on the way?"
+            what = f"Not right {value.where}: {digits(got[name])} is close, but not within {100 * value.rtol:g} %. "
+            what += "Read or compute it more exactly."
         return Wrong(what, nudge=True, about=name)
 
 
@@ -136,13 +139,17 @@ def unlike(got, right, where, names=("h", "v"), atol=0.0):
         return Wrong(raised(got))
     if isinstance(right, Exception):
         return Wrong(f"Not right {where}: it should raise {type(right).__name__}, and gives {digits(got)}.", nudge=True)
+    told = isinstance(got, Words)
+    two = isinstance(right, tuple) and np.shape(right) == (2,) and not told
     try:  # of the kind of the right one
-        if isinstance(right, tuple) and np.shape(right) == (2,):
+        if two:
             pair(got, names)
-        elif numeric(right) is not None:
+        elif numeric(right) is not None and not told:
             array(got, np.shape(right))
     except Wrong as wrong:
-        return Wrong(f"{wrong.what} That is {where}.")
+        return Wrong(f"{wrong.what} That is {where}.", nudge=wrong.nudge)
     if distance(got, right, 1e-4, atol) <= 1:
         return Wrong(f"Near {where}, but not to nine digits: is something approximated there, or rounded?", nudge=True)
-    return Wrong(f"Not right {where}: it gives {digits(got)}.", nudge=True)
+    fitting = [distance(*both, 1e-8, atol) <= 1 for both in zip(got, right, strict=True)] if two else []
+    half = "" if len({*fitting}) < 2 else f"; only the {'first' if fitting[0] else 'second'} of the two is right"
+    return Wrong(f"Not right {where}: it gives {digits(got)}{half}.", nudge=True)

@@ -1,5 +1,8 @@
 """Beside the page of lesson 4: what is done where there is no solution."""
 
+from hoverslam_lib.checks.answers import Words
+from hoverslam_lib.checks.feedback import Wrong, raised
+
 
 def without_solution(*arguments):
     """A probe for the arguments of a call: what is done there, in words."""
@@ -8,9 +11,11 @@ def without_solution(*arguments):
         "where there is no solution"
         try:
             got = solve(*arguments)
+        except ArithmeticError:
+            return Words("an ArithmeticError")
         except Exception as error:
-            return "an ArithmeticError" if isinstance(error, ArithmeticError) else f"a {type(error).__name__}"
+            raise Wrong(f"Where there is no solution, asked is an ArithmeticError. {raised(error)}") from error
         handed_back = isinstance(got, Exception) or (isinstance(got, type) and issubclass(got, Exception))
-        return "an error that is handed back" if handed_back else "no word"
+        return Words("an error that is handed back" if handed_back else "no word")
 
     return probe

@@ -101,14 +101,13 @@ def _runs():
     ):
         if faults is None:  # by the library, whose steps end on each switch
             run = fly(Descent(), t_ignite if t_ignite < np.inf else None, dt=dt)
+        elif short in more:  # the same run, without the climb
+            f = published.acceleration(t_ignite, faults)
+            run = integrate(f, 150e3, -2000.0, dt=dt, t_end=72.5, method="rkn4")
         else:
             run = published.fly(t_ignite, dt=dt, faults=faults)
-        end = run.t[np.argmax(run.v > 0)] + 0.5 if short in more else np.inf
         lit = f"lit at {t_ignite:g} s" if t_ignite < np.inf else "never lit"
-        found[f"{what}, {lit}, with rows {dt:g} s apart{''.join(more)}"] = (
-            t_ignite,
-            *(column[run.t <= end] for column in (run.t, run.h, run.v)),
-        )
+        found[f"{what}, {lit}, with rows {dt:g} s apart{''.join(more)}"] = t_ignite, run.t, run.h, run.v
     return found
 
 

@@ -19,12 +19,12 @@ from markdown_it.tree import SyntaxTreeNode
 
 import hoverslam_lib
 from hoverslam_lib.checks import record
-from hoverslam_lib.checks.answers import told_apart, untouched
+from hoverslam_lib.checks.answers import Words, told_apart, untouched
 from hoverslam_lib.checks.feedback import Feedback, judged
 from hoverslam_lib.checks.judging import Cases, Numbers, Value
 
 NAMES = {name: getattr(hoverslam_lib, name) for name in hoverslam_lib.__all__}
-NAMES |= {"np": np, "math": math, "Value": Value}
+NAMES |= {"np": np, "math": math, "Value": Value, "Words": Words}
 """What the Python of every page may use."""
 HEADER = ("mistake", "change", "hint")
 
@@ -87,15 +87,15 @@ class Exercise:
         """That of the mistake, or what was found; if asked for, with the next general one, unless nothing is new."""
         named = {mistake.name: mistake.hint for mistake in self.mistakes}
         hint = named[wrong.mistake].format(**wrong.values) if wrong.mistake in named else wrong.what
-        if not wrong.nudge:
+        # one that begins with an answer's name is for that answer only
+        split = [re.fullmatch(r"(?:`(my_\w+)`:? )?(.*)", general).groups() for general in self.hints]
+        fitting = [general for about, general in split if about in (None, wrong.about)]
+        if not wrong.nudge or not fitting:
             return hint
         told = [told_apart(answer) for name, answer in given.items() if wrong.about in (None, name)]
         tries = self.tries[wrong.about]
         if tries[-1:] != [told]:
             tries.append(told)
-        # one that begins with an answer's name is for that answer only
-        split = [re.fullmatch(r"(?:`(my_\w+)`:? )?(.*)", general).groups() for general in self.hints]
-        fitting = [general for about, general in split if about in (None, wrong.about)]
         return f"{hint} {fitting[min(len(tries), len(fitting)) - 1]}"
 
     @cached_property

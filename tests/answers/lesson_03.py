@@ -56,7 +56,7 @@ WRONG = {
         (lambda *at: _by_a_square(*at, side=1e-14), None),
         (lambda *at: _by_differences(*at, d=1e-8), None),
         (lambda step, f, x, v, dt: 1 + 5 * dt**2, None),
-        (lambda step, f, x, v, dt: _by_a_square(step, f, 0.0, 0.0, dt), None),
+        (lambda step, f, x, v, dt: _by_a_square(step, f, 0.0, 0.0, dt), "at the origin"),
         (lambda step, f, x, v, dt: step(f, 0.0, x, v, dt), None),
     ],
 }

@@ -87,7 +87,7 @@ WRONG = {
         (lambda r, u: _newton(r, u, error=RuntimeError), None),
         (_returns_the_error, "returns the error"),
         (lambda r, u: u, None),
-        (lambda r, u: _newton(r, u, size=lambda x: abs(u)), None),
+        (lambda r, u: _newton(r, u, size=lambda x: abs(u)), "never quite zero"),
         (lambda r, u: _newton(r, u, turns=10_000, error=None), "gives up in silence"),
         (lambda r, u: round(_newton(r, u), 4), None),
         (lambda r, u: _newton(r, u, near=1e-6), None),

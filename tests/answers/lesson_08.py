@@ -108,7 +108,7 @@ WRONG = {
         (_within(_by_math), "no root"),
         (_within(_divides_by_numpys_zero), "a is 0"),
         (lambda h, v, a, dt: dt * h / -(v * dt + a * dt**2 / 2), "linear"),
-        (_sampled, None),
+        (_sampled, "moments tried"),
         (lambda h, v, a, dt: h + v * dt + a * dt**2 / 2 <= 0, None),
         (lambda *step: _solved(*step, smallest=0.1), None),
         (lambda *step: _solved(*step, smallest=-0.1), None),

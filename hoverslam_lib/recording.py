@@ -53,7 +53,7 @@ def positions(live):
     number = math.prod(len(places) for places in found.values())
     if number > MOST_POSITIONS:
         raise ValueError(f"recorded: {number} positions in all; at most {MOST_POSITIONS} are kept")
-    return found
+    return {name: found[name] for name in live.controls if name in found}
 
 
 def frames(live):
@@ -81,8 +81,8 @@ def record(live):
     -------
     dict
         "width", "height" [px]; "controls", a list of dicts with "name", "unit", "shown" (the positions as text),
-        "start" (which of them comes first: that of the figure if it is among them) and "checkbox"; "kept", a sentence
-        for each control that does not move there; "ground", a PNG, and "layers", PNGs to lie on it, all as base64;
+        "start" (which of them comes first: that of the figure if it is among them) and "checkbox"; "kept", name and
+        value of each control that does not move there; "ground", a PNG, and "layers", PNGs to lie on it, all as base64;
         "sentences", one a layer.
     """
     places, ground = positions(live), live.pixels(moving=False)
@@ -95,7 +95,7 @@ def record(live):
         "width": width,
         "height": height,
         "controls": [_control(live.controls[name], values) for name, values in moving.items()],
-        "kept": [f"{_name(live.controls[n])} stays at {_shown(live.controls[n], value)}" for n, value in still.items()],
+        "kept": [_kept(live.controls[name], value) for name, value in still.items()],
         "ground": _png(Image.fromarray(ground).convert("RGB").quantize(256, dither=Image.Dither.NONE)),
         "layers": layers,
         "sentences": sentences,
@@ -175,18 +175,24 @@ def _thinned(control, most):
 
 def _control(control, places):
     shown = [_shown(control, place) for place in places]
-    unit = re.search(r"\[(.+)\]$", control.description)
+    name, unit = _name(control)
     return {
-        "name": _name(control),
-        "unit": unit[1] if unit else "",
+        "name": name,
+        "unit": unit,
         "shown": shown,
         "start": places.index(value_of(control)) if value_of(control) in places else 0,
         "checkbox": isinstance(control, Checkbox),
     }
 
 
+def _kept(control, value):
+    name, unit = _name(control)
+    return f"{name} {_shown(control, value)} {unit}".strip()
+
+
 def _name(control):
-    return re.sub(r"\s*\[.+\]$", "", control.description or control.tooltip or "")
+    """What a label says, and the unit that it has in brackets."""
+    return re.fullmatch(r"(.*?)\s*(?:\[(.+)\])?", control.description or control.tooltip or "").groups(default="")
 
 
 def _shown(control, value):

@@ -116,7 +116,7 @@ def test_a_record_says_what_its_controls_show_and_what_stays():
         {"name": "place", "unit": "m", "shown": ["1.00", "5.00"], "start": 1, "checkbox": False},
         {"name": "flag", "unit": "", "shown": ["off", "on"], "start": 1, "checkbox": True},
     ]
-    assert sorted(recorded["kept"]) == ["dt stays at 0.1", "z stays at 0.1"]
+    assert sorted(recorded["kept"]) == ["dt 0.1 s", "z 0.1 s"]
     assert recorded["sentences"][3] == "the dot is at 5.0, the others at {'flag': True, 'z': 0.1, 'dt': 0.1}"
     script = recording.script("page-0", recorded)
     assert json.loads(script.removeprefix('hoverslam.recordings["page-0"] = ').removesuffix(";\n")) == json.loads(

@@ -27,6 +27,10 @@ RECTANGLES = """pictures => pictures.map(e => {
     const {x, y, width, height} = e.getBoundingClientRect();
     return [x, y, width, height];
 })"""
+SEEN_THROUGH = """layer => {
+    const style = getComputedStyle(layer);
+    return style.backgroundColor === "rgba(0, 0, 0, 0)" && style.filter === "none" && style.opacity === "1";
+}"""
 SHOWN = "figure => figure.querySelector('.picture img:last-child').src"
 
 
@@ -59,7 +63,10 @@ def recordings(made):
 @pytest.fixture(params=WIDTHS)
 def page(chromium, request):
     context = chromium.new_context(
-        viewport={"width": request.param, "height": 900}, has_touch=request.param == 390, offline=True
+        viewport={"width": request.param, "height": 900},
+        has_touch=request.param == 390,
+        color_scheme="dark" if request.param == 390 else "light",
+        offline=True,
     )
     page, page.said = context.new_page(), []
     page.on("console", lambda message: page.said.append(message.text) if message.type in ("error", "warning") else None)
@@ -142,6 +149,7 @@ def test_every_figure_follows_keys_and_finger_to_what_was_recorded(page, made, r
             check_position(figure, record, places)
         ground, layer = figure.locator(".picture img").evaluate_all(RECTANGLES)
         assert ground == layer
+        assert figure.locator(".picture img").last.evaluate(SEEN_THROUGH)
         assert ground[2] >= min(record["width"], 0.72 * record["width"]) - 1
         assert ground[2] / ground[3] == pytest.approx(record["width"] / record["height"], rel=0.01)
     assert page.said == []

@@ -307,7 +307,7 @@ def main(arguments=None):
     copying.add_argument("--withhold-solutions", action="store_true", help="show_solution says to ask the instructor")
     booking = commands.add_parser("book", help="make pages for any browser, whose figures move without Python")
     booking.add_argument("folder")
-    booking.add_argument("--for-students", action="store_true", help="without the guide and mission control")
+    booking.add_argument("--for-students", action="store_true", help="without the instructor's guide")
     booking.add_argument("--open", action="store_true", help="show the answers to the predictions at once")
     options = parser.parse_args(arguments)
     try:

@@ -59,8 +59,6 @@ def build(paths, folder, *, for_students=False, unfold=False):
     folder = Path(folder)
     if folder.exists() and any(folder.iterdir()) and not (folder / "_static" / "recorded.js").exists():
         raise ValueError(f"{folder} holds other files and no book: name a new folder")
-    if for_students:
-        paths = [path for path in paths if path.stem != "mission_control"]
     names = record_all(paths)
     with tempfile.TemporaryDirectory() as scratch:
         source, made = Path(scratch, "source"), Path(scratch, "made")
@@ -219,8 +217,8 @@ def _fold(cell):
 
 def _index(paths, for_students):
     groups = {part: [p.stem for p in paths if re.match(pattern, p.name)] for part, pattern in PARTS.items()}
-    others = ["glossary"] if for_students else ["glossary", "instructor_guide", "mission_control"]
-    groups["For reference" if for_students else "For those who teach"] = others
+    others = ["glossary", *([] if for_students else ["instructor_guide"]), "mission_control"]
+    groups["Beside the lessons"] = others
     trees = [
         "\n".join(["```{toctree}", ":maxdepth: 1", f":caption: {part}", "", *names, "```"])
         for part, names in groups.items()

@@ -27,6 +27,11 @@ window.hoverslam = { recordings: {} };
         const picture = make("div", { class: "picture" }, ground, layer); // it sizes both, so that they never part
         picture.style.width = `min(${recorded.width}px, max(100%, ${still.style.minWidth}))`;
         picture.style.aspectRatio = `${recorded.width} / ${recorded.height}`;
+        // room for the longest sentence, so that the picture stays where it is
+        const longest = recorded.sentences.reduce((one, other) => (other.length > one.length ? other : one));
+        const room = make("div", { class: "room" }, make("p", { "aria-hidden": "true" }, longest));
+        status.replaceWith(room);
+        room.append(status);
         const places = recorded.controls.map(control => control.start);
 
         const show = () => {

@@ -7,6 +7,7 @@ HERE = Path(__file__).parent
 (_mathjax,) = find_spec("sphinx-mathjax-offline").submodule_search_locations
 
 project = html_title = "Landing a booster"
+author = ""
 language = "en"
 extensions = ["myst_nb"]
 myst_enable_extensions = ["amsmath", "dollarmath"]

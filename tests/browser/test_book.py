@@ -191,6 +191,17 @@ def test_no_line_is_cut_in_print(chromium, made):
     page.close()
 
 
+def test_menu_and_contents_open_on_a_phone(page, made):
+    page.goto((made / "03_symplectic_euler.html").as_uri())
+    if page.viewport_size["width"] != 390:
+        pytest.skip("they stand beside the text there")
+    for kind, entry in (("primary", "4 · A step that has to be solved"), ("secondary", "The phase plane")):
+        page.locator(f"button.{kind}-toggle:visible").click()
+        link = page.locator("dialog[open]").get_by_role("link", name=entry)
+        link.wait_for(state="visible", timeout=3000)
+        page.keyboard.press("Escape")
+
+
 def test_films_can_be_paused_and_played_again(page, made):
     page.goto((made / "10_animations.html").as_uri())
     films = page.locator("img[src^='data:image/gif']")

@@ -41,7 +41,7 @@ window.hoverslam = { recordings: {} };
         };
         const controls = recorded.controls.map((control, k) => input(control, place => { places[k] = place; show(); }));
         const kept = recorded.kept.length ? [`Kept here: ${recorded.kept.join(", ")}.`] : [];
-        kept.push("The notebook has all controls, at every place.");
+        kept.push("Here only some places are recorded; the notebook has all.");
         figure.querySelector(".hoverslam-controls").replaceChildren(...controls, make("p", { class: "kept" }, kept.join(" ")));
         still.replaceWith(make("div", { class: "scroll", tabindex: "0", role: "group", "aria-label": "figure" }, picture));
         show();
@@ -90,6 +90,11 @@ window.hoverslam = { recordings: {} };
     }
 
     document.addEventListener("DOMContentLoaded", () => {
+        // the theme listens to the first button of each kind only, which a narrow page hides
+        for (const kind of ["primary", "secondary"]) {
+            const [first, ...others] = document.querySelectorAll(`button.${kind}-toggle`);
+            for (const button of others) button.addEventListener("click", () => first.click());
+        }
         const near = new IntersectionObserver(entries => {
             for (const { isIntersecting, target } of entries) {
                 if (!isIntersecting) continue;

@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from hoverslam_lib import _validate
+from hoverslam_lib import _columns, _validate
 from hoverslam_lib._roots import bracketed_root
 from hoverslam_lib.booster import FALCON_9, FALCON_9_LANDING_BURN, Booster
 from hoverslam_lib.integrators import step_function
@@ -26,13 +26,17 @@ OUTCOMES = (SOFT_LANDING, CRASH, STOPPED_TOO_HIGH, OUT_OF_PROPELLANT)
 class Descent:
     """A booster above a planet, before anything is said of its engine.
 
+    Its numbers, and those of booster and planet, may be columns: arrays of one length, with one number for each row
+    of an ensemble. `fly` flies one descent, `fly_all` all rows. Two descents are equal if all their numbers are; one
+    with columns has no hash.
+
     Parameters
     ----------
     booster : Booster
     planet : Planet
-    height : float
+    height : float or ndarray, shape (n,)
         h at t = 0 [m], greater than 0.
-    velocity : float
+    velocity : float or ndarray, shape (n,)
         v = dh/dt at t = 0 [m/s], negative while falling.
     """
 
@@ -45,8 +49,22 @@ class Descent:
         for name, kind in (("booster", Booster), ("planet", Planet)):
             if not isinstance(getattr(self, name), kind):
                 raise TypeError(f"{name} must be a {kind.__name__}; got {getattr(self, name)!r}")
-        _validate.number("height", self.height, "m", above=0)
-        _validate.number("velocity", self.velocity, "m/s")
+        _validate.number_or_column("height", self.height, "m", above=0)
+        _validate.number_or_column("velocity", self.velocity, "m/s")
+        _validate.one_length(self.columns)
+
+    __eq__, __repr__ = _columns.equal, _columns.shown
+
+    @cached_property
+    def columns(self):
+        """Those of the numbers that are columns: a dictionary of name, as ``booster.thrust``, and column."""
+        parts = (("booster.", self.booster), ("planet.", self.planet), ("", self))
+        return {prefix + name: column for prefix, part in parts for name, column in _columns.columns(part).items()}
+
+    def rows(self, which):
+        """The descent of some rows of the columns: of one, given its number, or of several, given a slice."""
+        booster, planet = _columns.rows(self.booster, which), _columns.rows(self.planet, which)
+        return _columns.rows(self, which, booster=booster, planet=planet)
 
     def drag(self, h, v):
         """Force of the air [N] at height h [m] and velocity v [m/s], upward positive: it opposes the motion."""
@@ -253,8 +271,9 @@ def fly(descent, t_ignite, *, dt=0.02, method="rk4", controller=None):
         If an argument is not allowed, if the flight would take more than ten million steps, if dt is so large that
         the numbers overflow or a climb ends on the ground, or if the booster never comes down.
     """
-    if not isinstance(descent, Descent):
-        raise TypeError(f"descent must be a Descent; got {descent!r}")
+    require_one_descent(descent)
+    if _validate.is_column(t_ignite):
+        raise TypeError("t_ignite must be one time [s]; got a column: `fly_all` flies one flight a row")
     if t_ignite is not None:
         t_ignite = _validate.number("t_ignite", t_ignite, "s", least=0)
     dt = _validate.number("dt", dt, "s", above=0)
@@ -268,6 +287,15 @@ def fly(descent, t_ignite, *, dt=0.02, method="rk4", controller=None):
         _, h, v = coasted[-1]
         raise ValueError(f"the booster never comes down: at h = {h:.0f} m it still climbs at {v:.0f} m/s")
     return finish(descent, t_ignite, np.array(coasted), end, controller, dt=dt, step=step)
+
+
+def require_one_descent(descent):
+    """Raise unless `descent` is a Descent without columns."""
+    if not isinstance(descent, Descent):
+        raise TypeError(f"descent must be a Descent; got {descent!r}")
+    if descent.columns:
+        names = ", ".join(descent.columns)
+        raise TypeError(f"descent must be one descent; got columns ({names}): `fly_all` flies one flight a row")
 
 
 def finish(descent, t_ignite, coasted, end, controller=None, *, dt, step):

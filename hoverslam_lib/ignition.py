@@ -11,7 +11,7 @@ import numpy as np
 
 from hoverslam_lib import _validate
 from hoverslam_lib._roots import bracketed_root
-from hoverslam_lib.descent import Descent, StepTooLargeError, advance, coast, finish, fly
+from hoverslam_lib.descent import Descent, StepTooLargeError, advance, coast, finish, fly, require_one_descent
 from hoverslam_lib.integrators import dop8, rk4, step_function
 from hoverslam_lib.trajectory import rounding, time_grid
 
@@ -90,7 +90,7 @@ def hover_height(descent, t_ignite, *, dt=0.02, method="rk4"):
     NoSoftLanding
         If thrust does not exceed the dry weight.
     """
-    _require_descent(descent)
+    require_one_descent(descent)
     dt = _validate.number("dt", dt, "s", above=0)
     t_ignite = _validate.number("t_ignite", t_ignite, "s", least=0)
     _validate.step_count(min(t_ignite, descent._shortest_fall()), dt)
@@ -174,7 +174,7 @@ def best_ignition(descent):
     NoSoftLanding
         With its reason and by how much.
     """
-    _require_descent(descent)
+    require_one_descent(descent)
     _require_thrust(descent)
     found = None
     for n in range(14):
@@ -244,11 +244,6 @@ def ignition_table(t_ignite, *, dt, methods=("rk4", "symplectic_euler"), descent
     quantities = ["hover height [m]", "touchdown velocity [m/s]", "outcome"]
     columns = pd.MultiIndex.from_product([methods, quantities])
     return pd.DataFrame(rows, index=pd.Index(times, name="t_ignite [s]"), columns=columns)
-
-
-def _require_descent(descent):
-    if not isinstance(descent, Descent):
-        raise TypeError(f"descent must be a Descent; got {descent!r}")
 
 
 def _require_thrust(descent):

@@ -11,9 +11,9 @@ import numpy as np
 
 from hoverslam_lib import _validate
 from hoverslam_lib._roots import bracketed_root
-from hoverslam_lib.descent import Descent, StepTooLargeError, advance, coast, finish, fly, require_one_descent
+from hoverslam_lib.descent import Descent, StepTooLargeError, coast, finish, fly, require_one_descent, walk
 from hoverslam_lib.integrators import dop8, rk4, step_function
-from hoverslam_lib.trajectory import rounding, time_grid
+from hoverslam_lib.trajectory import rounding
 
 NEAR_ZERO = 1e-6
 """A hover no further from the ground than this share of the height at the start is taken for one at the ground."""
@@ -354,24 +354,14 @@ def _deepest(planet):
 
 def _stop(descent, t, h, v, *, dt, step):
     """When and where a full burn from (t, h, v) comes to rest, the ground ignored: (t, h). See `hover_height`."""
-    booster, planet, deepest = descent.booster, descent.planet, _deepest(descent.planet)
-    if v == 0 and descent.acceleration(throttle=1.0)(0.0, h, v) >= 0:
-        return t, h
-    t_empty = t + booster.burn_duration
-    burning = descent.acceleration(throttle=1.0, since=t)
-
-    def dry(t, h, v):
-        return (booster.thrust + descent.drag(h, v)) / booster.dry_mass - planet.gravity(h)
-
+    deepest, t_empty = _deepest(descent.planet), t + descent.booster.burn_duration
+    burning, dry = descent.acceleration(throttle=1.0, since=t), descent._on_thrust_without_loss()
     for f, t_end in ((burning, t_empty), (dry, math.inf)):
-        for t_next in time_grid(t, t_end, dt):
-            while t < t_next:
-                falling = v < 0
-                s, h, v, event = advance(step, f, t, h, v, t_next - t, ground=-math.inf)
-                t = t_next if event is None else min(t + s, t_next)
-                if event == "turn" and falling:
-                    return t, h
-                if h < deepest:
-                    return t, -math.inf
+        start = t, h, v
+        for t, h, v, event in walk(step, f, start, t_end, dt=dt, ground=-math.inf):  # noqa: B007 (v counts below)
+            if event == "stop":
+                return t, h
+            if h < deepest:
+                return t, -math.inf
         if v > 0:
             return math.inf, math.inf  # dry and climbing with thrust above weight

@@ -101,8 +101,8 @@ class Descent:
 
         return burning if _validate.is_column(throttle) or throttle else coasting
 
-    def _on_thrust_without_loss(self):
-        """f(t, h, v) [m/s²] at full thrust and the dry mass, which stays: beyond an empty tank, see `hover_height`."""
+    def acceleration_when_dry(self):
+        """Return f(t, h, v) [m/s²] at full thrust and at the dry mass, which stays: see `hover_height`."""
         thrust, drag, dry_mass, gravity = self.booster.thrust, self.drag, self.booster.dry_mass, self.planet.gravity
         return lambda t, h, v: (thrust + drag(h, v)) / dry_mass - gravity(h)
 
@@ -289,9 +289,13 @@ def fly(descent, t_ignite, *, dt=0.02, method="rk4", controller=None):
     step = step_function(method)
     coasted, end = coast(descent, t_coast, dt=dt, step=step)
     if end == "space":
-        _, h, v = coasted[-1]
-        raise ValueError(f"the booster never comes down: at h = {h:.0f} m it still climbs at {v:.0f} m/s")
+        raise never_comes_down(*coasted[-1][1:])
     return finish(descent, t_ignite, np.array(coasted), end, controller, dt=dt, step=step)
+
+
+def never_comes_down(h, v):
+    """The error of a free fall that has no end."""
+    return ValueError(f"the booster never comes down: at h = {h:.0f} m it still climbs at {v:.0f} m/s")
 
 
 def require_one_descent(descent):

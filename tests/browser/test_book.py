@@ -336,6 +336,8 @@ def test_pictures_stand_on_white_without_a_frame_on_a_dark_page(dark, made):
         dark.goto(path.as_uri())
         looks = dark.locator(".cell_output .output img:not(.picture img)").evaluate_all(look)
         assert set(looks) <= {"rgb(255, 255, 255),none,0px"}, path.name
+        filters = "found => found.map(e => getComputedStyle(e).filter)"
+        assert set(dark.locator("article img").evaluate_all(filters)) <= {"none"}, path.name
         around = dark.locator(".cell_output .text_html:has(img)").evaluate_all(grounds)
         assert set(around) <= {"rgba(0, 0, 0, 0)"}, path.name
 

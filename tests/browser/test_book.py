@@ -237,3 +237,128 @@ def test_for_students_and_unfolded(made, tmp_path):
     shutil.rmtree(tmp_path / "book" / "_static")
     with pytest.raises(ValueError, match="holds other files and no book"):
         book.build(paths, tmp_path / "book")
+
+
+# ---- looks
+
+WALL = {"width": 1920, "height": 1080}
+OFF_ITS_VALUES = """() => {
+    const right = cell => {
+        const text = document.createRange();
+        text.selectNodeContents(cell);
+        return cell.textContent.trim() ? text.getBoundingClientRect().right : null;
+    };
+    const found = [];
+    for (const table of document.querySelectorAll("table.dataframe")) {
+        const heading = table.tHead.rows[0].cells;
+        if ([...heading].some(cell => cell.colSpan > 1)) continue;
+        for (const row of table.tBodies[0].rows)
+            for (const [k, cell] of [...row.cells].reverse().entries()) { // labels may span rows
+                const over = heading[heading.length - 1 - k];
+                const [above, below] = [right(over), right(cell)];
+                if (cell.tagName === "TD" && above && below && Math.abs(above - below) > 1)
+                    found.push(`${over.textContent}: ${cell.textContent} ends ${below - above} px beside it`);
+            }
+    }
+    return found;
+}"""
+PALE = """() => {
+    const light = part => { part /= 255; return part <= 0.04045 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4; };
+    const found = new Set();
+    for (const e of document.querySelectorAll("article :is(p, li, td, th, a, code, pre, pre span, summary, h1, h2)")) {
+        if (!e.checkVisibility() || !e.textContent.trim()) continue;
+        const [r, g, b] = getComputedStyle(e).color.match(/[\\d.]+/g).map(Number);
+        const contrast = 1.05 / (0.2126 * light(r) + 0.7152 * light(g) + 0.0722 * light(b) + 0.05);
+        if (contrast < 4.5) found.add(`${e.tagName}.${e.className} ${r} ${g} ${b}`);
+    }
+    return [...found];
+}"""
+UNDERLINED = "links => links.map(e => getComputedStyle(e).textDecorationLine === 'underline')"
+HIDDEN_SIDES = """() => [...document.querySelectorAll(".output, .cell_input pre, .hoverslam-recorded .scroll")]
+    .filter(e => e.checkVisibility())
+    .map(e => ({scrolls: e.scrollWidth > e.clientWidth, faded: getComputedStyle(e).getPropertyValue("--right")}))"""
+
+
+@pytest.fixture
+def dark(chromium):
+    context = chromium.new_context(viewport=WALL, color_scheme="dark", offline=True)
+    yield context.new_page()
+    context.close()
+
+
+def book_pages(made):
+    return [path for path in sorted(made.glob("*.html")) if path.stem not in ("search", "genindex")]
+
+
+def test_pages_fit_phone_tablet_and_wall_with_one_field_for_searching(chromium, made):
+    page = chromium.new_page()
+    for path in book_pages(made):
+        assert "Author name not set" not in path.read_text("utf-8")
+        page.goto(path.as_uri())
+        for width in (390, 1024, 1920):
+            page.set_viewport_size({"width": width, "height": 900})
+            assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), (path.name, width)
+            assert page.locator(".search-button__button:visible, input[type=search]:visible").count() == 1
+    page.close()
+
+
+def test_headings_stand_over_their_values(page, made):
+    for path in book_pages(made):
+        page.goto(path.as_uri())
+        page.evaluate("document.querySelectorAll('details').forEach(part => part.open = true)")
+        assert page.evaluate(OFF_ITS_VALUES) == [], path.name
+
+
+def test_no_code_is_hidden_at_the_side_of_a_wall_and_what_scrolls_on_a_phone_fades(chromium, made):
+    page = chromium.new_page(viewport=WALL)
+    for path in book_pages(made):
+        page.goto(path.as_uri())
+        page.evaluate("document.querySelectorAll('details').forEach(part => part.open = true)")
+        page.set_viewport_size(WALL)
+        assert not any(part["scrolls"] for part in page.evaluate(HIDDEN_SIDES)), path.name
+        page.set_viewport_size({"width": 390, "height": 844})
+        page.wait_for_timeout(100)
+        for part in page.evaluate(HIDDEN_SIDES):
+            assert (part["faded"] != "0px") == part["scrolls"], path.name
+    page.goto((made / "01_oscillator_and_error.html").as_uri())
+    code = page.locator(".cell_input pre").first
+    assert code.evaluate("e => getComputedStyle(e).getPropertyValue('--right')") != "0px"
+    code.evaluate("e => { e.scrollLeft = e.scrollWidth; }")
+    page.wait_for_timeout(100)
+    assert code.evaluate("e => getComputedStyle(e).getPropertyValue('--right')") == "0px"
+    page.close()
+
+
+def test_pictures_stand_on_white_without_a_frame_on_a_dark_page(dark, made):
+    look = "found => found.map(getComputedStyle).map(s => [s.backgroundColor, s.filter, s.padding].join())"
+    grounds = "found => found.map(e => getComputedStyle(e).backgroundColor)"
+    for path in book_pages(made):
+        dark.goto(path.as_uri())
+        looks = dark.locator(".cell_output .output img:not(.picture img)").evaluate_all(look)
+        assert set(looks) <= {"rgb(255, 255, 255),none,0px"}, path.name
+        filters = "found => found.map(e => getComputedStyle(e).filter)"
+        assert set(dark.locator("article img").evaluate_all(filters)) <= {"none"}, path.name
+        around = dark.locator(".cell_output .text_html:has(img)").evaluate_all(grounds)
+        assert set(around) <= {"rgba(0, 0, 0, 0)"}, path.name
+
+
+def test_paper_has_dark_letters_whatever_the_screen_has(dark, made):
+    dark.emulate_media(media="print", color_scheme="dark")
+    for path in book_pages(made):
+        dark.goto(path.as_uri())
+        dark.evaluate("dispatchEvent(new Event('beforeprint'))")
+        assert dark.evaluate(PALE) == [], path.name
+        assert dark.locator("article summary:visible").count() == 0
+        links = dark.locator("article a:visible").evaluate_all(UNDERLINED)
+        assert all(links), path.name
+
+
+def test_mission_control_is_seen_whole_on_a_wall(chromium, made):
+    page = chromium.new_page(viewport=WALL)
+    figure = figure_of(page, made, "mission_control-0")
+    page.evaluate("scrollTo(0, 0)")
+    picture = figure.locator(".picture").bounding_box()
+    assert picture["y"] + picture["height"] <= WALL["height"]
+    assert picture["width"] > 1100
+    assert figure.locator("input").first.bounding_box()["y"] < picture["y"]
+    page.close()

@@ -93,7 +93,7 @@ def _without_outputs(path):
 
 
 def _clean(notebook):
-    """Keep what is the same on every machine: no versions, no timings, no random names of cells."""
+    """Keep what is the same in every run: no versions, no timings, no random names of cells, no addresses of films."""
     notebook.metadata = {
         "kernelspec": {"display_name": "Python 3 (ipykernel)", "language": "python", "name": "python3"},
         "language_info": {"name": "python"},
@@ -106,7 +106,10 @@ def _clean(notebook):
         for output in cell.get("outputs", []):
             if "metadata" in output:
                 output["metadata"] = {}
-            output.get("data", {}).pop("application/vnd.jupyter.widget-view+json", None)  # the still stays
+            data = output.get("data", {})
+            data.pop("application/vnd.jupyter.widget-view+json", None)  # the still stays
+            if "text/html" in data:
+                data["text/html"] = re.sub(r"(data:image/gif;base64,[\w+/=]+)#\d+", r"\1", data["text/html"])
         if "outputs" in cell:
             cell.outputs = [output for output in cell.outputs if output.get("data") != {}]
 

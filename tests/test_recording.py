@@ -7,7 +7,7 @@ import json
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
-from ipywidgets import Checkbox, FloatLogSlider, FloatSlider, FloatText, SelectionSlider
+from ipywidgets import Checkbox, FloatLogSlider, FloatSlider, FloatText, IntSlider, SelectionSlider, SelectMultiple
 from PIL import Image
 
 from hoverslam_lib import recording
@@ -59,19 +59,35 @@ def test_without_a_choice_the_first_two_controls_move_and_dt_among_them():
     assert recording.positions(made({"z": None}, z=z))["z"] == pytest.approx(10.0 ** np.arange(-2, 0.1, 0.5))
 
 
+def test_finding_the_positions_moves_nothing_and_recording_draws_each_once():
+    live = made({"x": [0, 0.3], "n": None}, n=IntSlider(3, min=1, max=7, step=2, description="n"))
+    drawn, update = [], live.update
+    live.update = lambda **values: drawn.append(values) or update(**values)
+    places = recording.positions(live)
+    assert places == {"x": [0, 0.3], "n": [1, 3, 5, 7]}
+    assert {type(n) for n in places["n"]} == {int}  # 5.0 is refused by the control
+    assert drawn == []
+    list(recording.frames(live, places))
+    assert drawn == [{"x": x, "n": n} for x in (0, 0.3) for n in (1, 3, 5, 7)] + [{"x": 5, "n": 3}]
+
+
 @pytest.mark.parametrize(
     ("recorded", "message"),
     [
-        ({"y": None}, "no control 'y'; there are x, free"),
+        ({"y": None}, "no control 'y'; there are x, free, names"),
         ({"x": [0.25]}, "'place [m]' has no place 0.25; the nearest is 0.2"),
-        ({"x": ["far"]}, "'place [m]' cannot be 'far'"),
+        ({"x": ["far"]}, "'place [m]' has no place 'far'"),
+        ({"x": [11]}, "'place [m]' has no place 11; the nearest is 10.0"),
+        ({"free": ["far"]}, "'free' cannot be 'far'"),
+        ({"names": [("a", "c")]}, "'names' has no place ('a', 'c')"),
         ({"x": None, "free": list(range(4))}, None),
         ({"x": [1], "free": range(301)}, "301 positions in all; at most 300 are kept"),
         ({"free": None}, "name the positions of 'free', which has no steps of its own"),
     ],
 )
 def test_what_cannot_be_recorded_is_said(recorded, message):
-    live = made(recorded, free=FloatText(0, description="free"))
+    names = SelectMultiple(options=["a", "b"], description="names")
+    live = made(recorded, free=FloatText(0, description="free"), names=names)
     if message is None:
         assert len(recording.positions(live)["x"]) == 75
         return
@@ -83,7 +99,7 @@ def test_what_cannot_be_recorded_is_said(recorded, message):
 def test_each_frame_is_what_the_kernel_shows_there_to_the_word_and_the_pixel():
     live = made({"x": [0, 2.5, 9.5], "flag": [True, False]}, flag=Checkbox(True, description="flag"))
     before = live.text, live.pixels()
-    frames = list(recording.frames(live))
+    frames = list(recording.frames(live, recording.positions(live)))
     assert live.text == before[0]
     assert np.array_equal(live.pixels(), before[1])
     places = [(x, flag) for x in (0, 2.5, 9.5) for flag in (True, False)]
@@ -99,7 +115,7 @@ def test_layers_cover_what_moves_and_nothing_else():
     live = made({"x": [0, 2.5, 9.5]})
     recorded, ground = recording.record(live), live.pixels(moving=False)
     assert np.abs(opened(recorded["ground"]).astype(int) - ground).max() <= 8  # 256 colours
-    for layer, (_, pixels) in zip(recorded["layers"], recording.frames(live), strict=True):
+    for layer, (_, pixels) in zip(recorded["layers"], recording.frames(live, recording.positions(live)), strict=True):
         layer = opened(layer)
         covers = layer[..., 3] > 0
         assert np.array_equal(covers, np.any(pixels != ground, axis=-1))

@@ -11,7 +11,6 @@ from hoverslam_lib import book, course
 
 pytest.importorskip("playwright.sync_api", reason="playwright is missing: pip install -e '.[dev]'")
 pytest.importorskip("sphinx", reason="sphinx is missing: pip install -e '.[book]'")
-import driver
 from axe_playwright_python.sync_playwright import Axe
 
 WIDTHS = (390, 1280)
@@ -32,15 +31,6 @@ SEEN_THROUGH = """layer => {
     return style.backgroundColor === "rgba(0, 0, 0, 0)" && style.filter === "none" && style.opacity === "1";
 }"""
 SHOWN = "figure => figure.querySelector('.picture img:last-child').src"
-
-
-@pytest.fixture(scope="module")
-def chromium():
-    try:
-        with driver.browser() as browser:
-            yield browser
-    except driver.NoBrowser as missing:
-        pytest.skip(str(missing))
 
 
 @pytest.fixture(scope="module")

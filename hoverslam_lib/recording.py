@@ -88,7 +88,8 @@ def record(live):
     dict
         "width", "height" [px]; "controls", a list of dicts with "name", "unit", "shown" (the positions as text),
         "start" (which of them comes first: that of the figure if it is among them) and "checkbox"; "kept", name and
-        value of each control that does not move there; "ground", a PNG, and "layers", PNGs to lie on it, all as base64;
+        value of each control that does not move there; "landmarks", dicts with "name" and "places", the number of the
+        position of each control; "ground", a PNG, and "layers", PNGs to lie on it, all as base64;
         "sentences", one a layer.
     """
     places, ground = positions(live), live.pixels(moving=False)
@@ -102,6 +103,7 @@ def record(live):
         "height": height,
         "controls": [_control(live.controls[name], values) for name, values in moving.items()],
         "kept": [_kept(live.controls[name], value) for name, value in still.items()],
+        "landmarks": [_landmark(name, wanted, moving) for name, wanted in live.landmarks.items()],
         "ground": _png(Image.fromarray(ground).convert("RGB").quantize(256, dither=Image.Dither.NONE)),
         "layers": layers,
         "sentences": sentences,
@@ -200,6 +202,13 @@ def _control(control, places):
         "start": places.index(value_of(control)) if value_of(control) in places else 0,
         "checkbox": isinstance(control, Checkbox),
     }
+
+
+def _landmark(name, wanted, moving):
+    for control, value in (dict.fromkeys(moving) | wanted).items():
+        if value not in moving.get(control, []):
+            raise ValueError(f"landmarks: {name!r} has {control} = {value!r}, which is not recorded")
+    return {"name": name, "places": [places.index(wanted[control]) for control, places in moving.items()]}
 
 
 def _kept(control, value):

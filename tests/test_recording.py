@@ -15,7 +15,7 @@ from hoverslam_lib.live import Live
 from hoverslam_lib.mission_control import MissionControl
 
 
-def made(recorded=None, **controls):
+def made(recorded=None, landmarks=None, **controls):
     """A dot that follows x, on a figure with the controls given."""
     fig, ax = plt.subplots(figsize=(3, 2))
     ax.set(xlim=(-1, 12), ylim=(-1, 1))
@@ -28,7 +28,7 @@ def made(recorded=None, **controls):
         return f"the dot is at {x!r}, the others at {others}"
 
     controls = {"x": FloatSlider(5, min=0, max=10, step=0.1, description="place [m]"), **controls}
-    return Live(fig, put, recorded=recorded, **controls)
+    return Live(fig, put, recorded=recorded, landmarks=landmarks, **controls)
 
 
 def opened(png):
@@ -138,6 +138,20 @@ def test_a_record_says_what_its_controls_show_and_what_stays():
     assert json.loads(script.removeprefix('hoverslam.recordings["page-0"] = ').removesuffix(";\n")) == json.loads(
         json.dumps(recorded)
     )
+
+
+def test_landmarks_are_positions_among_those_recorded():
+    flag = Checkbox(False, description="flag")
+    recorded = recording.record(made({"flag": None, "x": [1, 5]}, {"there": {"x": 5.0, "flag": True}}, flag=flag))
+    assert recorded["landmarks"] == [{"name": "there", "places": [1, 1]}]
+    assert recorded["sentences"][3].startswith("the dot is at 5.0, the others at {'flag': True")
+    for elsewhere, what in (
+        ({"x": 4, "flag": True}, "x = 4"),
+        ({"x": 5, "flag": True, "y": 1}, "y = 1"),
+        ({"x": 5}, "flag = None"),
+    ):
+        with pytest.raises(ValueError, match=f"landmarks: 'there' has {what}, which is not recorded"):
+            recording.record(made({"x": [1, 5], "flag": None}, {"there": elsewhere}, flag=flag))
 
 
 def test_mission_control_records_the_papers_landing_and_the_right_one():

@@ -89,15 +89,6 @@ CONTROLS = ".noUi-handle, .jupyter-widgets select, .jupyter-widgets input, .jupy
 
 
 @pytest.fixture(scope="module")
-def chromium():
-    try:
-        with driver.browser() as browser:
-            yield browser
-    except driver.NoBrowser as missing:
-        pytest.skip(str(missing))
-
-
-@pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     """A copy of the notebooks, and the scratch ones: nothing in the checkout is written to."""
     copy = tmp_path_factory.mktemp("browser") / "notebooks"

@@ -22,9 +22,9 @@ def _wanted(h, gate=30.0, high=13.6, low=9.0, v_td=1.0):
     return -math.sqrt(v_td**2 + 2 * low * h if h < gate else at_gate + 2 * high * (h - gate))
 
 
-def _velocity(h, v, mass, memory, gain=4.0, gate=30.0, high=13.6, low=13.6, v_td=1.0):
-    a = low if h < gate else high
-    return _throttle(a + gain * (_wanted(h, gate, high, low, v_td) - v), h, v, mass)
+def _velocity(h, v, mass, memory, gain=2.0, gate=30.0, high=13.631, low=13.631, v_td=1.0):
+    a, wanted = low if h < gate else high, _wanted(h, gate, high, low, v_td)
+    return _throttle(a * v / wanted - gain * (v - wanted), h, v, mass)
 
 
 def _filtered(law, trust=0.2, of_v=1.0, **numbers):
@@ -81,8 +81,8 @@ WRONG = {
         (_steady, "the steady law"),
         (lambda h, v, mass, memory: -v / 400, None),
         (lambda h, v, mass, memory: 0.7 + 0.01 * (-v - math.sqrt(2 * 10 * max(h, 0))), None),
-        (lambda *a: _velocity(*a, gain=0.5), None),
-        (lambda *a: _velocity(*a, gain=12.0), None),
+        (lambda *a: _velocity(*a, gain=0.2), None),
+        (lambda *a: _velocity(*a, gain=16.0), None),
         (_filtered(_velocity, trust=0.2, of_v=0.2), None),
         (_of_all_flights, "remembers its last call"),
         (lambda h, v, mass, memory: memory["h"], None),
@@ -97,8 +97,8 @@ RIGHT = {
     "13.1": [(98, 1009), (98.1, 1010), (np.float64(98), 29_000 * (1 - np.exp(-98 / U)))],
     "13.2": [lambda h, *a: _wanted(h, *a), lambda h, *a: np.array(_wanted(h, *a))],
     "13.3": [
-        _filtered(_gated),
-        _filtered(_velocity, gain=6.0, low=9.0),
-        _filtered(_velocity, trust=0.15, gain=5.0, gate=20.0, low=8.5),
+        _filtered(_gated, trust=0.1, v_td=0.9),
+        _filtered(_velocity, trust=0.1, gain=4.0, low=9.0, v_td=0.8),
+        _filtered(_velocity, trust=0.1, low=9.0, v_td=0.9),
     ],
 }

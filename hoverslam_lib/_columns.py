@@ -1,6 +1,6 @@
 """Frozen dataclasses whose numbers may be columns: how they compare, show themselves and give their rows."""
 
-from dataclasses import fields, replace
+from dataclasses import fields
 
 import numpy as np
 
@@ -15,13 +15,12 @@ def columns(record):
 
 def rows(record, which, **parts):
     """The same record with some rows of its columns as arrays, or of one row, given its number, as floats."""
-    return replace(record, **{name: taken(column, which) for name, column in columns(record).items()}, **parts)
-
-
-def taken(column, which):
-    """Some rows of a column as an array of floats, or the float in one row."""
-    numbers = np.asarray(column, dtype=float)[which]
-    return numbers if isinstance(numbers, np.ndarray) else float(numbers)
+    made = object.__new__(type(record))  # its numbers are checked already
+    vars(made).update({field.name: getattr(record, field.name) for field in fields(record)}, **parts)
+    for name, column in columns(record).items():
+        numbers = np.asarray(column, dtype=float)[which]
+        vars(made)[name] = numbers if isinstance(numbers, np.ndarray) else float(numbers)
+    return made
 
 
 def equal(record, other):

@@ -253,7 +253,10 @@ def test_menu_and_contents_open_on_a_phone_and_close_when_an_entry_is_chosen(pag
     page.locator("button.secondary-toggle:visible").tap()
     page.locator("dialog[open]").get_by_role("link", name="The phase plane").tap()
     page.locator("dialog[open]").wait_for(state="detached", timeout=3000)
-    assert 0 <= page.get_by_role("heading", name="The phase plane").bounding_box()["y"] < 300
+    there = (
+        "id => { const {top} = document.getElementById(id).getBoundingClientRect(); return top >= -1 && top < 200; }"
+    )
+    page.wait_for_function(there, arg="the-phase-plane", timeout=5000)  # the page glides
     page.locator("button.primary-toggle:visible").tap()
     page.locator("dialog[open]").get_by_role("link", name="4 · A step that has to be solved").tap()
     page.wait_for_url("**/04_implicit_euler.html")
@@ -352,6 +355,17 @@ def test_a_picture_wider_than_the_page_says_so(page, made, recordings):
         wider = figure.locator(".scroll").evaluate("part => part.scrollWidth > part.clientWidth")
         assert figure.get_by_text("swipe it for the rest").is_visible() == wider
         assert wider == (page.viewport_size["width"] == 390 and book.SMALLEST * record["width"] > 360)
+
+
+def test_what_a_control_changes_comes_into_view_on_a_phone(page, made):
+    phone(page)
+    figure = figure_of(page, made, "09_ignition_tables-0")
+    page.evaluate("scrollTo({top: 0, behavior: 'instant'})")
+    scroll = figure.locator(".scroll")
+    ends = {"ignition, ledger": "part => part.scrollLeft > 100", "ignition as printed": "part => part.scrollLeft < 60"}
+    for name, shows in ends.items():  # its panel stands at the right, and at the left
+        figure.get_by_role("button", name=f"{name}: one place up", exact=True).tap()
+        page.wait_for_function(shows, arg=scroll.element_handle(), timeout=5000)
 
 
 NEAREST = 1.2

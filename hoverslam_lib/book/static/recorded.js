@@ -39,7 +39,12 @@ window.hoverslam = { recordings: {} };
             layer.alt = status.textContent = recorded.sentences[n];
         };
         const controls = recorded.controls.map((control, k) =>
-            row(`${figure.dataset.recording}-${k}`, control, place => { places[k] = place; show(); }));
+            row(`${figure.dataset.recording}-${k}`, control, place => {
+                const before = layer.src;
+                places[k] = place;
+                show();
+                if (layer.src !== before) reveal(scroll, before, layer.src);
+            }));
         const landmarks = recorded.landmarks.map(landmark => {
             const button = make("button", { type: "button" }, landmark.name);
             button.addEventListener("click", () => landmark.places.forEach((place, k) => controls[k].put(place)));
@@ -57,6 +62,29 @@ window.hoverslam = { recordings: {} };
         still.replaceWith(scroll, hint);
         new ResizeObserver(() => { hint.hidden = scroll.scrollWidth <= scroll.clientWidth; }).observe(scroll);
         show();
+    }
+
+    // where a picture is wider than the page, its part that has just changed comes into view
+    async function reveal(scroll, ...layers) {
+        const room = scroll.clientWidth;
+        if (scroll.scrollWidth <= room) return;
+        const [before, now] = await Promise.all(layers.map(pixels));
+        const changed = [];
+        for (let n = 3; n < now.data.length; n += 4)
+            if ([0, 1, 2, 3].some(k => Math.abs(before.data[n - k] - now.data[n - k]) > 64)) changed.push(((n >> 2) % now.width) / now.width);
+        if (!changed.length) return;
+        const [left, right] = [Math.min, Math.max].map(end => changed.reduce((one, other) => end(one, other)) * scroll.scrollWidth);
+        if (right - left > room) return;
+        if (left < scroll.scrollLeft || right > scroll.scrollLeft + room) scroll.scrollLeft = (left + right - room) / 2;
+    }
+
+    async function pixels(source) {
+        const image = make("img", { src: source });
+        await image.decode();
+        const canvas = make("canvas", { width: image.naturalWidth, height: image.naturalHeight });
+        const drawing = canvas.getContext("2d");
+        drawing.drawImage(image, 0, 0);
+        return drawing.getImageData(0, 0, canvas.width, canvas.height);
     }
 
     // a control's name, its field and its value; for fingers a button beside each end, because a place may be narrow

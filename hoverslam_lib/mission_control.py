@@ -290,7 +290,7 @@ class MissionControl:
         moment = HBox([controls["moment"], play, self.play])
         right = VBox([controls["planet"], controls["methods"], controls["faults"], moment])
         panel = GridBox([left, right], layout=Layout(grid_template_columns="50% 50%", max_width="980px"))
-        page = VBox([panel, HBox(buttons), self.live.message, self.live.picture, self.table])
+        page = VBox([panel, HBox(buttons), self.live.screen, self.table])
         page.add_class("hoverslam-live")
         return page
 

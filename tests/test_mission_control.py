@@ -79,7 +79,7 @@ def test_ignition_is_dragged_on_the_sliders_grid_and_typed_as_it_is(page):
 
 def test_dragging_draws_once_a_movement(page):
     pictures = []
-    page.live.picture.observe(lambda change: pictures.append(change), "value")
+    page.live.screen.observe(pictures.append, "moving")
     page.slider.value = 58.33
     page.live.controls["t_ignite"].value = 57.123456
     assert len(pictures) == 2
@@ -88,7 +88,7 @@ def test_dragging_draws_once_a_movement(page):
 def test_no_soft_landing_is_explained_and_changes_nothing(page):
     page.live.set(thrust=0.2)
     page.find()
-    assert "No soft landing: thrust must exceed" in page.live.message.text
+    assert "No soft landing: thrust must exceed" in page.live.screen.text
     assert page.live.controls["t_ignite"].value == START["t_ignite"]
 
 

@@ -33,22 +33,12 @@ function describe(figure) {
         put(button, "aria-pressed", String(button.classList.contains("mod-active")));
 }
 
-// one line of what is said, with the line of the picture that it is about
+// one line of what is said, behind the piece of the picture's line that it is about
 function sentence(text, mark) {
     const line = document.createElement("div");
-    if (mark) line.append(stroke(mark));
+    line.innerHTML = mark ?? "";
     line.append(text);
     return line;
-}
-
-function stroke({ color, dash }) {
-    const name = "http://www.w3.org/2000/svg";
-    const [drawing, line] = ["svg", "line"].map(kind => document.createElementNS(name, kind));
-    const looks = { x1: 0, x2: 48, y1: 6, y2: 6, stroke: color, "stroke-width": 4, "stroke-dasharray": dash };
-    for (const [key, value] of Object.entries(looks)) line.setAttribute(key, value);
-    for (const [key, value] of Object.entries({ width: 48, height: 12, "aria-hidden": true })) drawing.setAttribute(key, value);
-    drawing.append(line);
-    return drawing;
 }
 
 // JupyterLab and Notebook go from cell to cell by the keys that move a control: not while one has them

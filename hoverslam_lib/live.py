@@ -158,16 +158,17 @@ class Live:
         ratio : float
             Pixels of the screen per CSS px.
         """
-        sharp = min(ratio, math.sqrt(MOST_PIXELS / (width * height)))
-        self.fig.set_dpi(self._dpi * width / self._width * sharp)
+        self.fig.set_dpi(self._dpi * width / self._width * ratio)
 
     def _hear(self, screen, content, buffers):
         """Answer a browser that asks whether the kernel is there, or tells what room it has."""
         if "room" not in content:
             screen.send(content)
             return
+        room = content["room"]
+        most = math.sqrt(MOST_PIXELS / (room["width"] * room["height"]))
         before = self.fig.dpi, *self.fig.get_size_inches()
-        self.fit(**content["room"])
+        self.fit(**room | {"ratio": min(room["ratio"], most)})
         if (self.fig.dpi, *self.fig.get_size_inches()) != before:
             self._draw()
 
@@ -192,7 +193,8 @@ class Live:
             self.text, moving = said, self._moving
         self._canvas.restore_region(self._background)
         for artist in moving:
-            self.fig.draw_artist(artist)
+            if artist.get_visible():
+                self.fig.draw_artist(artist)
         with self.screen.hold_sync():
             self.screen.put(np.asarray(self._canvas.buffer_rgba()))
             self.say(self.text)
@@ -225,7 +227,7 @@ def on_grid(value, slider):
     return min(place, slider.max, key=lambda place: abs(place - value))
 
 
-def verdict(flight, height):
+def verdict(flight, height, brief=False):
     """Say what became of a flight, led by the signed hover height.
 
     Parameters
@@ -233,6 +235,8 @@ def verdict(flight, height):
     flight : Flight
     height : float
         [m], from `hover_height`; nan if it has none.
+    brief : bool
+        In fewer words, to be read from afar.
 
     Returns
     -------
@@ -241,7 +245,7 @@ def verdict(flight, height):
     if flight.outcome == SOFT_LANDING:
         said = f"{SOFT_LANDING} with {abs(flight.touchdown[1]):.2f} m/s"
         if flight.hover and flight.hover[0] == flight.t[-2]:
-            return f"{said}, engine cut at hover height {flight.hover[1]:+.3f} m"
+            return f"{said}, {'' if brief else 'engine '}cut at hover height {flight.hover[1]:+.3f} m"
         if flight.mass[-1] == flight.descent.booster.dry_mass:
             said += ", tank empty"
         return f"{said}, hover height {height:+.3f} m" if math.isfinite(height) else said
@@ -250,7 +254,8 @@ def verdict(flight, height):
         if h > LOW:
             return f"stopped {_length(h)} too high"
         speed = speed_after_fall(flight.descent.planet, h)
-        return f"stopped {_length(h)} too high, and with the engine cut there, a crash with {speed:.1f} m/s"
+        cut = "; cut there" if brief else ", and with the engine cut there"
+        return f"stopped {_length(h)} too high{cut}, a crash with {speed:.1f} m/s"
     if flight.outcome == OUT_OF_PROPELLANT:
         v = round(flight.v[-1], 1) + 0.0  # no -0.0
         return f"tank empty {_length(flight.h[-1])} above the ground, at {v:.{0 if abs(v) >= 10 else 1}f} m/s"

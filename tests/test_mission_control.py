@@ -155,4 +155,5 @@ def test_moment_puts_the_dots_on_the_flight(page):
     assert t == pytest.approx(trial["t"][-1] / 2, abs=0.02)
     assert h == pytest.approx(np.interp(t, trial["t"], trial["h"]) / 1e3)
     assert len(before.get_xdata()) == trial["end"]
-    assert len(page.lines["dop8"][0][0].get_xdata()) == 0, "a method that is not chosen is not drawn"
+    assert not page.lines["dop8"][0][0].get_visible(), "a method that is not chosen is not drawn"
+    assert before.get_visible()

@@ -110,6 +110,8 @@ function fill(figure) {
     const page = figure.querySelector(".hoverslam-window");
     const view = figure.closest(".jp-WindowedPanel-outer, .lm-BoxPanel-child") ?? document.documentElement;
     if (!page) return () => {};
+    put(figure, "role", "region");
+    put(figure, "aria-label", "controls, verdict and picture");
     const observer = new ResizeObserver(() => {
         const whole = view.clientHeight;
         const above = page.getBoundingClientRect().top - view.getBoundingClientRect().top + view.scrollTop;
@@ -159,7 +161,7 @@ export default {
         const say = text => {
             const marks = model.get("marks");
             status.replaceChildren(...text.split("\n").map((line, n) => sentence(line, marks[n])));
-            put(canvas, "aria-label", text);
+            put(canvas, "aria-label", text.replaceAll("\n", " "));
         };
         const draw = paint(model, canvas);
         say(model.get("text"));

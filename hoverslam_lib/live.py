@@ -97,6 +97,7 @@ class Live:
         self._width, self._dpi = round(fig.bbox.width), fig.dpi
         self._moving = sorted(fig.findobj(lambda artist: artist.get_animated()), key=lambda artist: artist.zorder)
         for control in controls.values():
+            control.tooltip = control.tooltip or control.description  # else a hand over its label is told "null"
             control.observe(self._follow, "value")
         self.widget = VBox([*controls.values(), *_hint(controls.values(), self._width), self.screen])
         self.widget.layout.max_width = f"{self._width}px"
@@ -137,9 +138,10 @@ class Live:
     def show(self):
         """Show the controls and the figure; where they cannot live, a still picture of them shows instead."""
         _close_former_run(self)
-        still = Picture(_png(self.fig), self.text, self._width)._repr_html_()
-        page = f'<div class="hoverslam-still">{still}<p>{html.escape(self.text)} <em>{STILL}</em></p></div>'
-        display({"text/html": _ONE_OF_TWO + page, "text/plain": self.text}, raw=True)
+        said = " ".join(self.text.split())
+        still = Picture(_png(self.fig), said, self._width)._repr_html_()
+        page = f'<div class="hoverslam-still">{still}<p>{html.escape(said)} <em>{STILL}</em></p></div>'
+        display({"text/html": _ONE_OF_TWO + page, "text/plain": said}, raw=True)
         display({_VIEW: self.widget._repr_mimebundle_()[_VIEW]}, raw=True)
 
     def close(self):

@@ -170,7 +170,7 @@ class Methods(anywidget.AnyWidget):
 
     _esm = Path(__file__).with_name("mission_control.js")
     _css = Path(__file__).with_name("mission_control.css")
-    description = "methods"
+    description = traitlets.Unicode("methods").tag(sync=True)
     options = tuple((method.title.partition(" (")[0], key) for key, method in METHODS.items())
     value = traitlets.Tuple().tag(sync=True)
     looks = traitlets.List([{"key": key, "title": title, "mark": stroke(key, 30, 2.5)} for title, key in options]).tag(

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from ipywidgets import Checkbox, FloatLogSlider, FloatSlider, FloatText, IntSlider, SelectionSlider, SelectMultiple
 from PIL import Image
+from screen import shown
 
 from hoverslam_lib import recording
 from hoverslam_lib.live import Live
@@ -106,8 +107,7 @@ def test_each_frame_is_what_the_kernel_shows_there_to_the_word_and_the_pixel():
     for (x, flag), (sentence, pixels) in zip(places, frames, strict=True):
         live.set(x=x, flag=flag)
         assert sentence == live.text
-        shown = np.array(Image.open(io.BytesIO(live.picture.value)).convert("RGB"))
-        assert np.array_equal(pixels[..., :3], shown)
+        assert np.array_equal(pixels[..., :3], shown(live.screen))
     assert frames[-1][0] == "Not possible: too far"
 
 

@@ -202,12 +202,15 @@ def paper(chromium, request):
 
 
 FAINT = """() => {
-    const light = colour => Math.max(...colour.match(/[0-9.]+/g).slice(0, 3));
+    const light = colour => {
+        const [red, green, blue] = colour.match(/[0-9.]+/g).map(Number);
+        return 0.3 * red + 0.59 * green + 0.11 * blue;
+    };
     const parts = [...document.querySelectorAll("article :is(p, li, h1, h2, pre, td, th, a, summary)")];
     const style = part => getComputedStyle(part);
     const ground = [document.documentElement, document.body, document.querySelector(".bd-main")].map(style);
     return [
-        ...parts.filter(e => e.checkVisibility() && light(style(e).color) > 150).map(e => e.outerHTML.slice(0, 80)),
+        ...parts.filter(e => e.checkVisibility() && light(style(e).color) > 140).map(e => e.outerHTML.slice(0, 80)),
         ...ground.map(e => e.backgroundColor).filter(c => !/rgba\\(.*, 0\\)/.test(c) && light(c) < 250),
     ];
 }"""

@@ -164,7 +164,15 @@ window.hoverslam = { recordings: {} };
         for (const still of document.querySelectorAll("img.still")) stoppable(still.previousElementSibling);
     });
     // on a phone the page's contents cover what an entry leads to
-    document.addEventListener("click", event => event.target.closest("dialog a")?.closest("dialog").close());
+    document.addEventListener("click", event => {
+        const link = event.target.closest("dialog a");
+        if (!link) return;
+        const dialog = link.closest("dialog");
+        // when it closes, the theme puts its entries back above the text, which moves
+        const there = () => document.getElementById(decodeURIComponent(link.hash.slice(1)))?.scrollIntoView();
+        dialog.addEventListener("close", there, { once: true });
+        dialog.close();
+    });
     // what scrolls is reached by key too; formulas have their width late
     window.addEventListener("load", async () => {
         await window.MathJax?.startup?.promise;

@@ -5,7 +5,8 @@ checks what they store. ``python -m hoverslam_lib.course copy FOLDER`` makes a s
 that git leaves alone, or goes on with the one that is there; with ``--lesson 3`` it puts a fresh lesson beside the
 edited one, with ``--for-teaching`` it keeps the outputs and adds what instructors need, with ``--withhold-solutions``
 ``checks.show_solution`` says there to ask the instructor. ``python -m hoverslam_lib.course book FOLDER`` makes pages
-that any browser shows, without a network and without Python, and whose figures move.
+that any browser shows, without a network and without Python, and whose figures move. ``python -m hoverslam_lib.course
+collect FOLDER`` judges the copies that students returned, and runs their code for it.
 """
 
 import argparse
@@ -309,11 +310,13 @@ def main(arguments=None):
     booking.add_argument("folder")
     booking.add_argument("--for-students", action="store_true", help="without the instructor's guide")
     booking.add_argument("--open", action="store_true", help="show the answers to the predictions at once")
+    collecting = commands.add_parser("collect", help="judge returned copies: runs the students' code, see the guide")
+    collecting.add_argument("folder", help="a folder or a zip a student in it; the tables are written there too")
+    collecting.add_argument("lesson", nargs="*", help="number or name; all lessons if left out")
     options = parser.parse_args(arguments)
+    run = {"refresh": _refresh_all, "copy": _copy_all, "book": _make_book, "collect": _collect_all}
     try:
-        if options.command == "refresh":
-            return _refresh_all(options.lesson)
-        return _copy_all(options) if options.command == "copy" else _make_book(options)
+        return run[options.command](options)
     except ValueError as error:
         print(error, file=sys.stderr)
     except OSError as error:
@@ -322,11 +325,11 @@ def main(arguments=None):
     return 2
 
 
-def _refresh_all(names):
+def _refresh_all(options):
     from nbclient.exceptions import CellExecutionError
 
     failed = 0
-    paths = lessons(names)
+    paths = lessons(options.lesson)
     for n, path in enumerate(paths, start=1):
         print(f"[{n}/{len(paths)}] {path.name} ", end="", flush=True)
         start = time.perf_counter()
@@ -372,6 +375,20 @@ def _copy_all(options):
         written += 1
     if not written:
         print(f"{options.folder} is complete and left as it is; --lesson and a number put a fresh lesson beside yours")
+    return 0
+
+
+def _collect_all(options):
+    from hoverslam_lib import collect
+
+    folder, start = Path(options.folder), time.perf_counter()
+    number = len(collect.returned(folder))
+    all_of_them = [path for path in lessons() if re.match(r"\d\d_", path.name)]
+    asked = [path for path in lessons(options.lesson) if path in all_of_them]
+    for n, result in enumerate(collect.collect(folder, all_of_them, asked), start=1):
+        counts = ", ".join(f"{result.count(mark)} {mark}" for mark in "✔✘○")
+        print(f"[{n}/{number}] {result.student}: {counts} ({time.perf_counter() - start:.0f} s)", flush=True)
+    print(f"wrote {' and '.join(str(folder / name) for name in collect.TABLES)}")
     return 0
 
 

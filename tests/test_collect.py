@@ -175,7 +175,7 @@ def test_predictions_stand_side_by_side_as_they_were_written(tables):
 
 
 def test_notebook_that_stops_at_nothing_is_stopped_and_what_was_judged_before_counts():
-    deaf = "import signal\nsignal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGALRM})\nwhile True: pass"
+    deaf = "import signal, time\nsignal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGALRM})\nwhile True: time.sleep(1)"
     work = {"lesson": 2, "code": [right("2.1"), deaf, right("2.2")], "cell_limit": 60}
     assert collect._apart(work, 12) == ([["2.1", "✔", ""]], "stopped after 12 s")
 

@@ -186,6 +186,7 @@ def _write_source(source, paths, names, for_students):
     for name in ("glossary.md", *([] if for_students else ["instructor_guide.md"])):
         shutil.copyfile(notebooks / name, source / name)
     shutil.copytree(notebooks / "images", source / "images")
+    (source / "prediction_sheet.md").write_text(prediction_sheet(paths), encoding="utf-8")
     (source / "index.md").write_text(_index(paths, for_students), encoding="utf-8")
 
 
@@ -290,9 +291,21 @@ def _put_stills(page):
     page.write_text(re.sub(r'<img [^>]*src="(?:data:image/gif|[^"]*\.gif")[^>]*>', beside, text), encoding="utf-8")
 
 
+def prediction_sheet(paths):
+    """The predictions that lessons ask for, each with room to write: Markdown that prints as one page a lesson."""
+    pages = [(HERE / "prediction_sheet.md").read_text(encoding="utf-8")]
+    for path in paths:
+        cells = nbformat.read(path, as_version=4).cells
+        asked = [cell.source.strip().split("\n\n")[-1] for cell in cells if "**Predict" in cell.source]
+        if asked:
+            title = cells[0].source.partition("\n")[0]
+            pages.append("\n\n".join([f"#{title}", *(f'{text}\n\n<div class="write"></div>' for text in asked)]))
+    return "\n\n".join(pages) + "\n"
+
+
 def _index(paths, for_students):
     groups = {part: [p.stem for p in paths if re.match(pattern, p.name)] for part, pattern in PARTS.items()}
-    others = ["glossary", *([] if for_students else ["instructor_guide"]), "mission_control"]
+    others = ["glossary", "prediction_sheet", *([] if for_students else ["instructor_guide"]), "mission_control"]
     groups["Beside the lessons"] = others
     trees = [
         "\n".join(["```{toctree}", ":maxdepth: 1", f":caption: {part}", "", *names, "```"])

@@ -212,7 +212,7 @@ class _Panels(Live):
 
 def _grid(fig, rows, columns, width, height):
     """Places for panels with room for their labels, in a figure of width and height [in the size of its letters]."""
-    left, right, below, above = 4.8, 1.4, 3.4, 0.7
+    left, right, below, above = 5.7, 1.3, 3.4, 0.7
     wide, high = width / columns - left - right, height / rows - below - above
     edges = {"left": left / width, "right": 1 - right / width, "bottom": below / height, "top": 1 - above / height}
     return GridSpec(rows, columns, fig, wspace=(left + right) / wide, hspace=(below + above) / high, **edges)

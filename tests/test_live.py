@@ -24,7 +24,6 @@ from ipywidgets import (
     FloatText,
     IntSlider,
     SelectionSlider,
-    SelectMultiple,
 )
 from PIL import Image
 from scipy.optimize import brentq
@@ -33,6 +32,7 @@ from test_guide import settings
 
 from hoverslam_lib import FALCON_9, Descent, FreeFall, course, fly, live, published, recording
 from hoverslam_lib.live import Live, on_grid, verdict
+from hoverslam_lib.mission_control import Methods
 
 POSITIONS = int(os.environ.get("LIVE_POSITIONS", "100"))
 NOTEBOOKS = [path for path in course.lessons() if "Live(" in path.read_text() or "MissionControl" in path.read_text()]
@@ -298,13 +298,15 @@ def live_widgets():
 def test_verdict_leads_with_the_hover_height():
     fall = FreeFall(Descent(), dt=0.1)
 
-    def said(t):
-        return verdict(fall.fly(t), fall.hover_height(t))
+    def said(t, **how):
+        return verdict(fall.fly(t), fall.hover_height(t), **how)
 
     assert said(60.2) == "stopped 12.7 m too high, and with the engine cut there, a crash with 15.8 m/s"
     assert said(60.211) == "soft landing with 0.90 m/s, engine cut at hover height +0.041 m"
     assert said(60.21104).startswith("soft landing with 1.")
     assert "cut" not in said(60.21104)
+    assert said(60.2, brief=True) == "stopped 12.7 m too high; cut there, a crash with 15.8 m/s"
+    assert said(60.211, brief=True) == "soft landing with 0.90 m/s, cut at hover height +0.041 m"
     assert "hover height +0.00" in said(60.211035)
     assert said(60.3).startswith("hover height −102 m, 188.4 m/s too fast")
     assert said(20.0) == "stopped 91.52 km too high"
@@ -367,7 +369,7 @@ def range_of(control):
         return [control.min, control.max], lambda rng: int(rng.integers(control.min, control.max + 1))
     if isinstance(control, Checkbox):
         return [False, True], lambda rng: bool(rng.integers(2))
-    if isinstance(control, SelectMultiple):
+    if isinstance(control, Methods):
         keys = [value for _, value in control.options]
         return [(), tuple(keys)], lambda rng: tuple(k for k in keys if rng.integers(len(keys)) < 2)
     assert isinstance(control, SelectionSlider | Dropdown), control

@@ -77,8 +77,10 @@ CUT = """figure => {
     const texts = 'label, button, input, select, th, td, .widget-readout, [role=status] > :first-child';
     const cut = part => part.scrollWidth > part.clientWidth + 1 && part.clientWidth > 0;
     const out = part => part.getBoundingClientRect().right > window.innerWidth + 1;
-    const parts = [...figure.querySelectorAll('*')].filter(part => part.checkVisibility());
-    return parts.filter(part => out(part) || part.matches(texts) && cut(part)).map(part => part.outerHTML.slice(0, 200));
+    const parts = [...figure.querySelectorAll('*')]
+        .filter(part => part.checkVisibility() && !part.closest('.hoverslam-trials *')); // which scrolls
+    const found = parts.filter(part => out(part) || part.matches(texts) && cut(part));
+    return found.map(part => part.outerHTML.slice(0, 200));
 }"""
 WIDTHS = """figure => [...figure.querySelectorAll('.noUi-base')].map(track => track.getBoundingClientRect().width)"""
 ASK = """async expression => {

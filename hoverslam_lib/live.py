@@ -31,7 +31,7 @@ _ONE_OF_TWO = """<style>
 LOW = 100.0
 """From hovers up to here [m] the fall is told: from much higher, the air would have its say."""
 
-MOST_PIXELS = 4_000_000
+MOST_PIXELS = 8_000_000
 """Of a picture: beyond that, sharpness costs more time than it is worth."""
 
 _SHOWN = {}  # by cell and run: so that a cell run again takes its former figure out of memory

@@ -454,10 +454,10 @@ def test_what_fly_refuses_is_refused_with_its_row():
     light = Descent(Booster(20.0, 20.0, 0.2, 600.0, 0.5, 1.0), EARTH, 100.0, np.array([0.0, 200.0]))
     with pytest.raises(StepTooLargeError, match=r"in row 1: a climb ends on the ground: dt = 0.5 s is too large"):
         fly_all(light, None, dt=0.5)
-    with pytest.raises(StepTooLargeError, match=r"in row 1: .* dt = 0.5 s is too large"):
+    with pytest.raises(StepTooLargeError, match=r"in row 1: (a climb ends on the ground|the numbers overflow): dt"):
         fly_all(light, 0.0, dt=0.5)
-    with pytest.raises(StepTooLargeError, match=r"in row 1: the numbers overflow: dt = 20 s is too large"):
-        fly_all(Descent(height=np.array([1.0, 150e3])), 1e3, dt=20.0, method="explicit_euler")
+    with pytest.raises(StepTooLargeError, match=r"in row 0: the numbers overflow: dt = 300 s is too large"):
+        fly_all(replace(PAPER, height=np.array([150e3, 1e6])), 900.0, dt=300.0)
 
 
 # ---- controllers --------------------------------------------------------------------------------------------------

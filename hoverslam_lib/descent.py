@@ -110,7 +110,7 @@ class Descent:
     def _drag_area(self):
         return 0.5 * self.booster.drag_coefficient * self.booster.area
 
-    def _escapes(self, h, v):
+    def escapes(self, h, v):
         """Whether a booster that coasts upward can never turn round, for certain.
 
         The air above takes at most ½·C_D·A·ρ·H·v² of its energy, H being the scale height.
@@ -118,15 +118,15 @@ class Descent:
         lost = self._drag_area * self.planet.air_density(h) * self.planet.scale_height / self.booster.initial_mass
         return (v > 0) & (v * v * (0.5 - lost) >= self.planet.gravity(h) * (self.planet.radius + h))
 
-    def _shortest_fall(self):
+    def shortest_fall(self):
         """A time before which no flight can end on the ground [s]: no air, and gravity everywhere as strong as there.
 
         Of an ascent only the fall from the start on counts, because air can make the rest as short as it likes.
         """
-        if self._escapes(self.height, self.velocity):
-            return math.inf
-        down = max(-self.velocity, 0.0)
-        return 2 * self.height / (down + math.sqrt(down**2 + 2 * self.planet.gravity(0.0) * self.height))
+        down = (abs(self.velocity) - self.velocity) / 2
+        fall = 2 * self.height / (down + (down**2 + 2 * self.planet.gravity(0.0) * self.height) ** 0.5)
+        escapes = self.escapes(self.height, self.velocity)
+        return np.where(escapes, math.inf, fall) if _validate.is_column(escapes) else math.inf if escapes else fall
 
 
 def speed_after_fall(planet, h, v=0.0):
@@ -283,7 +283,7 @@ def fly(descent, t_ignite, *, dt=0.02, method="rk4", controller=None):
         t_ignite = _validate.number("t_ignite", t_ignite, "s", least=0)
     dt = _validate.number("dt", dt, "s", above=0)
     t_coast = math.inf if t_ignite is None else t_ignite
-    at_least = min(descent._shortest_fall(), t_coast + descent.booster.burn_duration)
+    at_least = min(descent.shortest_fall(), t_coast + descent.booster.burn_duration)
     if at_least < math.inf:
         _validate.step_count(at_least, dt)
     step = step_function(method)
@@ -345,7 +345,7 @@ def coast(descent, t_end, *, dt, step, start=None):
         nodes.append((t, h, v))
         if event == "ground":
             return nodes, "ground"
-        if v > 0 and t_end == math.inf and descent._escapes(h, v):
+        if v > 0 and t_end == math.inf and descent.escapes(h, v):
             return nodes, "space"
     return nodes, "time"
 

@@ -326,14 +326,14 @@ class _March:
         crosses = self._above & (self._h <= 0) & ~stop
         self._crossings.record(crosses, self._place, *start, self._h)
         self._above = self._above & ~crosses
-        sunk = (np.minimum(start[1], self._h) <= self._floor) & ~stop
+        sunk = ((start[1] <= self._floor) | (self._h <= self._floor)) & ~stop
         self._require_return()
         self.ends.sunk[self._place[sunk]] = True
         return stop | sunk
 
     def _require_return(self):
         if np.any(self._duration == math.inf) and np.any(self._v > 0):
-            lost = (self._duration == math.inf) & self._descent._escapes(self._h, self._v)
+            lost = (self._duration == math.inf) & self._descent.escapes(self._h, self._v)
             if lost.any():
                 i = int(np.argmax(lost))
                 raise _InRow(self._lanes[self._place[i]], never_comes_down(self._h[i], self._v[i]))
@@ -384,6 +384,8 @@ def _column(value, n):
 def _fly_block(descent, t_ignite, fall, solver, table):
     """Fly all flights of a block, and write what becomes of them into the table."""
     n, planned = len(t_ignite), (0.0, descent.height, descent.velocity)
+    least = np.minimum(descent.shortest_fall(), t_ignite + descent.booster.burn_duration)
+    _validate.step_count(np.max(least, where=np.isfinite(least), initial=0.0), solver.dt)
     t, h, v = fall.before(t_ignite) if fall else (_column(x, n) for x in planned)
     phase = _falling, descent, np.arange(n), h, v, t_ignite - t, np.zeros(n)
     ends = _March(*phase, solver, stops=False).run()

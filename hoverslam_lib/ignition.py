@@ -93,7 +93,7 @@ def hover_height(descent, t_ignite, *, dt=0.02, method="rk4"):
     require_one_descent(descent)
     dt = _validate.number("dt", dt, "s", above=0)
     t_ignite = _validate.number("t_ignite", t_ignite, "s", least=0)
-    _validate.step_count(min(t_ignite, descent._shortest_fall()), dt)
+    _validate.step_count(min(t_ignite, descent.shortest_fall()), dt)
     step = step_function(method)
     _require_thrust(descent)
     nodes, end = coast(descent, t_ignite, dt=dt, step=step)

@@ -190,42 +190,40 @@ def test_a_free_fall_is_an_ensemble_too():
     assert (table["propellant left [kg]"] == descent.booster.propellant_mass).all()
 
 
-@pytest.mark.parametrize("t_ignite", [None, 0.0, 20.0])
+@pytest.mark.parametrize("t_ignite", [0.0, 20.0])
 def test_faster_than_it_could_escape_and_yet_held_back_by_the_air(t_ignite):
     descent = Descent(FALCON_9, EARTH, 1.0, 12e3)
-    reference, flight = referee.fly(descent, t_ignite), fly(descent, t_ignite)
-    end = flight.touchdown or (flight.t[-1], flight.v[-1])
-    expected = reference.touchdown or (reference.burnout[0], reference.burnout[2])
+    flight, reference = fly(descent, t_ignite), referee.fly(descent, t_ignite)
     assert flight.outcome == reference.outcome
-    assert end == pytest.approx(expected, rel=1e-7)
-    several = replace(descent, height=np.array([1.0, 1.0, 2.0]))
-    rows, near = (
-        zip(*(row(several.rows(i), t_ignite, dt=0.02) for i in range(3)), strict=True)
-        if t_ignite is not None
-        else ([], [])
-    )
-    table = fly_all(several, t_ignite, dt=0.02)
-    if rows:
-        check_rows(table, rows, near)
-    else:
-        assert table["touchdown velocity [m/s]"][0] == pytest.approx(flight.touchdown[1], abs=1e-7)
+    assert (flight.t[-1], flight.h[-1], flight.v[-1]) == pytest.approx(reference.burnout, rel=1e-7)
+    several = replace(descent, height=np.array([1.0, 2.0]))
+    rows, near = zip(*(row(several.rows(i), t_ignite, dt=0.02) for i in range(2)), strict=True)
+    check_rows(fly_all(several, t_ignite, dt=0.02), rows, near)
+
+
+def test_faster_than_it_could_escape_it_comes_down_again():
+    descent = Descent(FALCON_9, EARTH, 1.0, 12e3)
+    t, _, v = referee.free_fall(descent)[-1]
+    how = {"dt": 0.2, "method": "dop8"}
+    assert fly(descent, None, **how).touchdown == pytest.approx((t, v), rel=1e-9)
+    table = fly_all(replace(descent, height=np.array([1.0, 1.0])), None, **how)
+    assert table["touchdown time [s]"].tolist() == pytest.approx([t, t], rel=1e-9)
+    assert table["touchdown velocity [m/s]"].tolist() == pytest.approx([v, v], rel=1e-9)
 
 
 @pytest.mark.parametrize("planet", [EARTH, MARS, MOON])
 def test_a_tank_that_runs_dry_just_above_the_ground_too_fast(planet):
-    booster = replace(FALCON_9, propellant_mass=200.0)
-    descent = Descent(booster, planet, 1.5, np.array([-9.0, -5.0, -3.6, -2.5, -1.0]))
-    for i in range(5):
-        one = descent.rows(i)
-        flight, reference = fly(one, 0.0, dt=0.01), referee.fly(one, 0.0)
-        assert flight.outcome == reference.outcome
-        if reference.burnout:
-            assert 0 < reference.burnout[1] < 1.5
-            assert (flight.t[-1], flight.h[-1], flight.v[-1]) == pytest.approx(
-                reference.burnout, abs=1e-8
-            ) or flight.touchdown
+    booster = replace(FALCON_9, propellant_mass=40.0)  # 27 ms, or some 7 m/s
+    descent = Descent(booster, planet, 0.3, np.array([-12.0, -11.0, -10.0, -8.0, -2.0]))
     rows, near = zip(*(row(descent.rows(i), 0.0, dt=0.01) for i in range(5)), strict=True)
-    assert any(r[0] == "out of propellant" for r in rows)
+    for i, found in enumerate(rows):
+        reference = referee.fly(descent.rows(i), 0.0)
+        assert found[0] == reference.outcome
+        if found[0] == "out of propellant":
+            assert 0 < reference.burnout[1] < 0.3
+            flight = fly(descent.rows(i), 0.0, dt=0.01)
+            assert (flight.t[-1], flight.h[-1], flight.v[-1]) == pytest.approx(reference.burnout, abs=1e-8)
+    assert [found[0] for found in rows].count("out of propellant") >= 2
     check_rows(fly_all(descent, 0.0, dt=0.01), rows, near)
 
 
@@ -454,11 +452,12 @@ def test_what_fly_refuses_is_refused_with_its_row():
     with pytest.raises(ValueError, match="in row away: the booster never comes down: at h = .* it still climbs"):
         fly_all(ascents, None)
     light = Descent(Booster(20.0, 20.0, 0.2, 600.0, 0.5, 1.0), EARTH, 100.0, np.array([0.0, 200.0]))
-    for t_ignite in (None, 0.0):
-        with pytest.raises(StepTooLargeError, match=r"in row 1: a climb ends on the ground: dt = 0.5 s is too large"):
-            fly_all(light, t_ignite, dt=0.5)
-    with pytest.raises(StepTooLargeError, match=r"in row 1: the numbers overflow: dt = 20 s is too large"):
-        fly_all(Descent(height=np.array([1.0, 150e3])), 1e3, dt=20.0, method="explicit_euler")
+    with pytest.raises(StepTooLargeError, match=r"in row 1: a climb ends on the ground: dt = 0.5 s is too large"):
+        fly_all(light, None, dt=0.5)
+    with pytest.raises(StepTooLargeError, match=r"in row 1: (a climb ends on the ground|the numbers overflow): dt"):
+        fly_all(light, 0.0, dt=0.5)
+    with pytest.raises(StepTooLargeError, match=r"in row 0: the numbers overflow: dt = 300 s is too large"):
+        fly_all(replace(PAPER, height=np.array([150e3, 1e6])), 900.0, dt=300.0)
 
 
 # ---- controllers --------------------------------------------------------------------------------------------------
@@ -519,15 +518,17 @@ def test_a_law_is_asked_at_ignition_and_every_dt_after_it_of_those_under_way():
         asked.append((t.copy(), h.copy(), mass.copy()))
         return 0.9
 
-    descent = Descent(FALCON_9, EARTH, np.array([2e3, 1e3]), -100.0)
-    table = fly_all(descent, np.array([1.0, 2.0]), dt=0.1, controller=law)
-    assert asked[0][0].tolist() == [1.0, 2.0]
+    descent = Descent(FALCON_9, EARTH, np.array([2e3, 115.0]), -100.0)
+    table = fly_all(descent, np.array([2.0, 1.0]), dt=0.1, controller=law)
+    assert asked[0][0].tolist() == [2.0, 1.0]
     assert asked[0][2].tolist() == [57_200.0] * 2
     for i, (t, _, mass) in enumerate(asked):
-        assert t - asked[0][0][-len(t) :] == pytest.approx(0.1 * i, abs=1e-12)
+        assert t - asked[0][0][: len(t)] == pytest.approx(0.1 * i, abs=1e-12)
         assert mass == pytest.approx(57_200 - 0.9 * 1_480 * 0.1 * i, rel=1e-12)
-    assert {len(t) for t, *_ in asked} == {1, 2}
-    assert table.notna()["touchdown time [s]"].sum() == 2 or table["outcome"].isin(OUTCOMES).all()
+    under_way = [len(t) for t, *_ in asked]
+    assert under_way == sorted(under_way, reverse=True)
+    assert set(under_way) == {1, 2}
+    assert table["outcome"].tolist() == ["stopped too high", "crash"]
 
 
 # ---- while it runs ------------------------------------------------------------------------------------------------
@@ -553,7 +554,7 @@ def test_it_can_be_interrupted_at_once():
         "fly_all(Descent(height=np.linspace(1e5, 2e5, 2_000_000)), 60.0, dt=0.02, progress=True)"
     )
     process = subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.PIPE, text=True)
-    assert process.stderr.read(5) == "\rfly_"[:5].replace("\r", "\n")
+    assert process.stderr.read(5) == "\nfly_"  # \r, as text
     time.sleep(0.5)
     sent = time.monotonic()
     process.send_signal(signal.SIGINT)

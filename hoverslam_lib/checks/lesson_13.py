@@ -109,7 +109,7 @@ def _velocity(h, v, mass):
 STATES = ((3000.0, -300.0, 33e3), (700.0, -115.0, 31e3), (6.0, -8.0, 29e3), (0.3, -2.5, 29e3))
 
 
-def throttle_project(law):
+def pilot_project(law):
     """Judge a throttle law by its flights; each version of it meets worlds of its own."""
     takes(law, "h", "v", "mass", "memory")
     said = np.array([number(repeatable(law, *state, {}), "the throttle") for state in STATES])
@@ -151,4 +151,4 @@ def _enough(what, ends, most, asked, mistake, commands):
     raise Wrong(score, mistake, nudge=not mistake, score=score)
 
 
-throttle_project.tests, throttle_project.seconds = 4, 30.0
+pilot_project.tests, pilot_project.seconds = 4, 30.0

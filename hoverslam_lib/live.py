@@ -85,13 +85,16 @@ class Live:
     recorded : dict, optional
         What also moves on a page without a kernel, see `recording`: by the name of a control the list of its
         positions, or None for places spread evenly over it. Left out: the first two controls, dt among them.
+    landmarks : dict of str to dict, optional
+        Positions that such a page has a button for, by what the button says: for each control that moves, its value.
     **controls : ipywidgets.Widget
         Any with a value; ``description`` is its label and should have the unit.
     """
 
-    def __init__(self, fig, update, *, recorded=None, **controls):
+    def __init__(self, fig, update, *, recorded=None, landmarks=None, **controls):
         plt.close(fig)
-        self.fig, self.update, self.controls, self.recorded = fig, update, controls, recorded
+        self.fig, self.update, self.controls = fig, update, controls
+        self.recorded, self.landmarks = recorded, landmarks or {}
         self.text, self.screen = "", Screen()
         self._canvas = FigureCanvasAgg(fig)
         self._width, self._dpi = round(fig.bbox.width), fig.dpi

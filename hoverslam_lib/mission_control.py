@@ -56,7 +56,6 @@ START = {
     "faults": False,
     "moment": 100,
 }
-PAPERS_LANDING = START | {"t_ignite": 35.88, "dt": 0.02, "methods": ("rkn4",), "faults": True}
 
 # what moves in the book: from the fall to the crash, dense where the two landings are, with both equations
 RECORDED = {
@@ -68,6 +67,10 @@ RECORDED = {
     "dt": [0.1, 0.02, 0.01],
     "faults": [False, True],
     "methods": [("rkn4",)],  # the paper's own
+}
+LANDINGS = {  # named as the buttons that lead there
+    "The paper's landing": {"t_ignite": 35.88, "dt": 0.02, "faults": True},
+    "Find the optimum": {"t_ignite": 60.211, "dt": 0.02, "faults": False},
 }
 
 # name of the axis, its limits, and what of a trial is drawn on it
@@ -233,7 +236,7 @@ class MissionControl:
         for name, control in controls.items():
             control.value = START[name]
         self.slider = self._slider(controls["t_ignite"])
-        self.live = _Panels(self._figure(), self._fly, recorded=RECORDED, **controls)
+        self.live = _Panels(self._figure(), self._fly, recorded=RECORDED, landmarks=LANDINGS, **controls)
         self.table, self.play = HTML(), Play(100, min=0, max=100, step=2, interval=120, layout=Layout(display="none"))
         jslink((self.play, "value"), (controls["moment"], "value"))
         self.live.widget = self._layout(controls)
@@ -248,7 +251,7 @@ class MissionControl:
 
     def papers_landing(self, _=None):
         """Set all that the paper's landing was computed with: its equation, its booster, its method and its numbers."""
-        self.live.set(**PAPERS_LANDING)
+        self.live.set(**START | {"methods": ("rkn4",)} | LANDINGS["The paper's landing"])
 
     def find(self, _=None):
         """Set the ignition to the optimum of the descent that is set, to the microsecond."""

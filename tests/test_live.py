@@ -5,6 +5,7 @@ import io
 import itertools
 import math
 import os
+import re
 import sys
 from dataclasses import replace
 from decimal import Decimal
@@ -27,6 +28,7 @@ from ipywidgets import (
 from PIL import Image
 from scipy.optimize import brentq
 from screen import shown as screen_shows
+from test_guide import settings
 
 from hoverslam_lib import FALCON_9, Descent, FreeFall, course, fly, live, published, recording
 from hoverslam_lib.live import Live, on_grid, verdict
@@ -402,6 +404,23 @@ def test_notebook_has_a_live_figure_with_places_for_the_book(lesson):
     assert lesson
     for made in lesson:
         assert recording.positions(made)
+
+
+def test_score_of_the_guide_finds_its_places_in_the_book_and_what_they_say(lesson, request):
+    for label, position, quoted in settings(request.node.callspec.params["lesson"].stem):
+        made, name = next(
+            (made, name)
+            for made in lesson
+            for name, control in made.controls.items()
+            if re.fullmatch(rf"{label}( \[s\])?", control.description or control.tooltip)
+        )
+        places = recording.positions(made)
+        made.set(**{other: values[0] for other, values in places.items() if len(values) == 1})
+        wanted = {"on": True}.get(position) or float(position)
+        assert wanted in places[name], (label, position)
+        made.set(**{name: wanted})
+        for sentence in quoted:
+            assert sentence in made.text
 
 
 def test_every_corner_and_many_positions(lesson):

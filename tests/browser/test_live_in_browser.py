@@ -113,15 +113,6 @@ CONTROLS = ", ".join(f".hoverslam-live {control}" for control in (".noUi-handle"
 
 
 @pytest.fixture(scope="module")
-def chromium():
-    try:
-        with driver.browser() as browser:
-            yield browser
-    except driver.NoBrowser as missing:
-        pytest.skip(str(missing))
-
-
-@pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     """A copy of the notebooks, and the scratch ones: nothing in the checkout is written to."""
     copy = tmp_path_factory.mktemp("browser") / "notebooks"

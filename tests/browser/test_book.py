@@ -495,6 +495,10 @@ PALE = """() => {
     return [...found];
 }"""
 UNDERLINED = "links => links.map(e => getComputedStyle(e).textDecorationLine === 'underline')"
+STYLES = """selector => [...document.querySelectorAll(selector)].map(e => {
+    const {backgroundColor, filter, padding} = getComputedStyle(e);
+    return {ground: backgroundColor, filter, padding};
+})"""
 HIDDEN_SIDES = """() => [...document.querySelectorAll(".output, .cell_input pre, .hoverslam-recorded .scroll")]
     .filter(e => e.checkVisibility())
     .map(e => ({scrolls: e.scrollWidth > e.clientWidth, faded: getComputedStyle(e).getPropertyValue("--right")}))"""
@@ -551,16 +555,14 @@ def test_no_code_is_hidden_at_the_side_of_a_wall_and_what_scrolls_on_a_phone_fad
 
 
 def test_pictures_stand_on_white_without_a_frame_on_a_dark_page(dark, made):
-    look = "found => found.map(getComputedStyle).map(s => [s.backgroundColor, s.filter, s.padding].join())"
-    grounds = "found => found.map(e => getComputedStyle(e).backgroundColor)"
     for path in book_pages(made):
         dark.goto(path.as_uri())
-        looks = dark.locator(".cell_output .output img:not(.picture img)").evaluate_all(look)
-        assert set(looks) <= {"rgb(255, 255, 255),none,0px"}, path.name
-        filters = "found => found.map(e => getComputedStyle(e).filter)"
-        assert set(dark.locator("article img").evaluate_all(filters)) <= {"none"}, path.name
-        around = dark.locator(".cell_output .text_html:has(img)").evaluate_all(grounds)
-        assert set(around) <= {"rgba(0, 0, 0, 0)"}, path.name
+        for still in dark.evaluate(STYLES, ".cell_output .output img:not(.picture img)"):
+            assert still == {"ground": "rgb(255, 255, 255)", "filter": "none", "padding": "0px"}, path.name
+        for picture in dark.evaluate(STYLES, "article img"):
+            assert picture["filter"] == "none", path.name
+        for around in dark.evaluate(STYLES, ".cell_output .text_html:has(img)"):
+            assert around["ground"] == "rgba(0, 0, 0, 0)", path.name
 
 
 def test_paper_has_dark_letters_whatever_the_screen_has(dark, made):

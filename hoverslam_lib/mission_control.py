@@ -230,7 +230,7 @@ class MissionControl:
             "drag": FloatSlider(min=0, max=2, step=0.05, description="drag coefficient"),
             "planet": Dropdown(options=list(PLANETS), description="planet"),
             "methods": Methods(),
-            "faults": Checkbox(description="published equation, faults included", indent=False),
+            "faults": Checkbox(description="the published equation, faults included", indent=False),
             "moment": IntSlider(min=0, max=100, description="moment [% of flight]"),
         }
         for name, control in controls.items():

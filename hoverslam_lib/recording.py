@@ -9,7 +9,7 @@ from itertools import combinations, product
 
 import numpy as np
 import traitlets
-from ipywidgets import Checkbox, FloatLogSlider, FloatSlider, IntSlider, SelectMultiple
+from ipywidgets import Checkbox, FloatLogSlider, FloatSlider, IntSlider
 from PIL import Image
 
 from hoverslam_lib.live import on_grid, value_of
@@ -147,7 +147,7 @@ def _places(control):
     """All places that a control has of its own, or None: it takes any number."""
     if hasattr(control, "options"):
         values = [option[1] if isinstance(option, tuple) else option for option in control.options]
-        several = isinstance(control, SelectMultiple)
+        several = isinstance(control.value, tuple)
         return [chosen for n in range(len(values) + 1) for chosen in combinations(values, n)] if several else values
     if isinstance(control, Checkbox):
         return [False, True]

@@ -268,9 +268,10 @@ def test_menu_and_contents_open_on_a_phone_and_close_when_an_entry_is_chosen(pag
 def test_no_tooltip_stays_on_a_phone(page, made):
     phone(page)
     page.goto((made / "03_symplectic_euler.html").as_uri())
-    page.locator("button.theme-switch-button:visible").first.tap()
+    page.locator("button.search-button__button:visible").first.tap()
+    page.locator(".tooltip").wait_for(state="attached", timeout=3000)
     page.wait_for_timeout(500)
-    assert [part for part in page.locator(".tooltip").all() if part.is_visible()] == []
+    assert not page.locator(".tooltip").is_visible()
 
 
 def swipe(page, start, by):
@@ -371,11 +372,12 @@ def test_what_a_control_changes_comes_into_view_on_a_phone(page, made):
         page.wait_for_function(shows, arg=scroll.element_handle(), timeout=5000)
 
 
-NEAREST = 1.2
+NEAREST = 2.0
 """A film that was begun anew shows no later moment [s] when its first picture is taken."""
 
 
-def test_films_are_stopped_at_their_last_picture_and_played_again_from_the_first(page, made):
+def test_films_are_stopped_at_their_last_picture_and_played_again_from_the_first(chromium, made):
+    page = chromium.new_page(color_scheme="light")  # a dark page dims its pictures
     page.goto((made / "10_animations.html").as_uri())
     films = page.locator("img[src^='data:image/gif']")
     assert films.count() == 3
@@ -391,17 +393,31 @@ def test_films_are_stopped_at_their_last_picture_and_played_again_from_the_first
         assert np.array_equal(np.array(last.convert("RGB")), pictures[-1])
     assert still.get_attribute("alt") == film.get_attribute("alt")
     assert re.search(r"\d", still.get_attribute("alt"))
+
+    small = [picture[::2, ::2].astype(np.int16) for picture in pictures]
+
+    def moment():
+        """What the film shows [s]."""
+        seen = Image.open(io.BytesIO(film.screenshot())).convert("RGB").resize(pictures[0].shape[1::-1])
+        seen = np.array(seen, dtype=np.int16)[::2, ::2]
+        return times[int(np.argmin([np.abs(picture - seen).mean() for picture in small]))]
+
     film.scroll_into_view_if_needed()
-    page.wait_for_timeout(4000)
+    shown = [moment()]
+    while len(shown) < 20 and shown[-2:] != [times[-1]] * 2:
+        page.wait_for_timeout(4000)  # longer than it rests before it begins anew
+        shown.append(moment())
+    assert shown[-2:] == [times[-1]] * 2  # it has played its three times
+    page.get_by_role("button", name="Play again", exact=True).first.click()
+    assert moment() < NEAREST
     page.get_by_role("button", name="Stop", exact=True).first.click()
     assert still.is_visible()
     assert not film.is_visible()
     page.get_by_role("button", name="Play again", exact=True).first.click()
     assert film.is_visible()
     assert not still.is_visible()
-    seen = Image.open(io.BytesIO(film.screenshot())).convert("RGB").resize(pictures[0].shape[1::-1])
-    off = [np.abs(picture - np.array(seen, dtype=int)).mean() for picture in pictures]
-    assert times[int(np.argmin(off))] < NEAREST
+    assert moment() < NEAREST
+    page.close()
 
 
 def packed(image):

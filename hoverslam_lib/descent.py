@@ -62,7 +62,12 @@ class Descent:
         return {prefix + name: column for prefix, part in parts for name, column in _columns.columns(part).items()}
 
     def rows(self, which):
-        """The descent of some rows of the columns: of one, given its number, or of several, given a slice."""
+        """The descent of some rows of the columns, given as a slice or an array of their numbers.
+
+        Of one row, given its number, it is a descent of floats, as `fly` takes it; without columns it is this one.
+        """
+        if not self.columns:
+            return self
         booster, planet = _columns.rows(self.booster, which), _columns.rows(self.planet, which)
         return _columns.rows(self, which, booster=booster, planet=planet)
 

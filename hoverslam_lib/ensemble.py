@@ -218,6 +218,10 @@ class _Solver:
             raise _InRow(lanes[np.argmin(good)], error)
 
 
+def _at(places, column):
+    return column[places] if np.ndim(column) else np.full(len(places), column)
+
+
 class _Steps:
     """Steps in which something happens, recorded until all are looked at together."""
 
@@ -228,9 +232,10 @@ class _Steps:
         return bool(self._recorded)
 
     def record(self, which, *columns):
-        """Keep some lanes of a block, given as a mask."""
-        if which.any():
-            self._recorded.append([np.broadcast_to(column, which.shape)[which] for column in columns])
+        """Keep some lanes of a block, given as a mask; a column may be one number for all."""
+        places = np.flatnonzero(which)
+        if places.size:
+            self._recorded.append([_at(places, column) for column in columns])
 
     def together(self):
         return [np.concatenate(columns) for columns in zip(*self._recorded, strict=True)]
@@ -281,13 +286,14 @@ class _March:
 
     def run(self):
         f, h, v, ends, dt = self._phase(self._descent), self._h, self._v, self.ends, self._solver.dt
+        lowest = self._floor.max(initial=-math.inf)
         if self._stops and np.any(v == 0):
             ends.stopped = (v == 0) & (f(0.0, h, v) >= 0)  # at rest, and thrust is not below weight
         gone = ends.stopped | (self._duration <= 0)
         for k in itertools.count():
             if gone.any():
                 self._keep(np.flatnonzero(~gone))
-                f = self._phase(self._descent)
+                f, lowest = self._phase(self._descent), self._floor.max(initial=-math.inf)
             if not self._place.size:
                 break
             t, h, v = k * dt, self._h, self._v
@@ -295,11 +301,12 @@ class _March:
             ending = self._duration - t <= dt * (1 + 1e-9)
             length = np.where(ending, self._duration - t, dt) if ending.any() else dt
             self._h, self._v = self._solver.step(f, t, h, v, length)
-            if length is dt and v.max() < 0 and self._v.max() < 0 and self._h.min() > 0:
+            quiet = length is dt and v.max() < 0 and self._v.max() < 0 and self._h.min() > lowest
+            if quiet and not (self._above & (self._h <= 0)).any():
                 gone = ending  # nothing happens, to nobody
             else:
                 gone = self._look(t, h, v, np.broadcast_to(length, h.shape)) | ending
-                self._end(gone, t + length)
+                self._end(np.flatnonzero(gone), t + length)
         self._locate()
         return ends
 
@@ -326,9 +333,10 @@ class _March:
         crosses = self._above & (self._h <= 0) & ~stop
         self._crossings.record(crosses, self._place, *start, self._h)
         self._above = self._above & ~crosses
-        sunk = ((start[1] <= self._floor) | (self._h <= self._floor)) & ~stop
         self._require_return()
-        self.ends.sunk[self._place[sunk]] = True
+        sunk = ((start[1] <= self._floor) | (self._h <= self._floor)) & ~stop
+        if sunk.any():
+            self.ends.sunk[self._place[sunk]] = True
         return stop | sunk
 
     def _require_return(self):
@@ -340,7 +348,7 @@ class _March:
 
     def _end(self, gone, t):
         there = self._place[gone]
-        self.ends.s[there] = np.broadcast_to(t, gone.shape)[gone]
+        self.ends.s[there] = _at(gone, t)
         self.ends.h[there], self.ends.v[there] = self._h[gone], self._v[gone]
 
     def _locate(self):

@@ -8,7 +8,7 @@ import numpy as np
 
 from hoverslam_lib.checks.answers import number, repeatable, takes, told_apart
 from hoverslam_lib.checks.feedback import Wrong
-from hoverslam_lib.descent import LANDING_BURN, SOFT_LANDING, Descent, coast, fly
+from hoverslam_lib.descent import LANDING_BURN, SOFT_LANDING, STOPPED_TOO_HIGH, Descent, coast, fly
 from hoverslam_lib.ignition import best_ignition
 from hoverslam_lib.integrators import rk4
 
@@ -148,6 +148,8 @@ def _enough(what, ends, most, asked, mistake, commands):
         mistake = "constant throttle"
     elif limited == {LOWEST, 1.0}:
         mistake = "on and off"
+    elif ends.count(STOPPED_TOO_HIGH) > (n - soft) / 2:
+        mistake = mistake or "stops too high"
     raise Wrong(score, mistake, nudge=not mistake, score=score)
 
 

@@ -4,8 +4,11 @@
 checks what they store. ``python -m hoverslam_lib.course copy FOLDER`` makes a student's working copy, without outputs,
 that git leaves alone, or goes on with the one that is there; with ``--lesson 3`` it puts a fresh lesson beside the
 edited one, with ``--for-teaching`` it keeps the outputs and adds what instructors need, with ``--withhold-solutions``
-``checks.show_solution`` says there to ask the instructor. ``python -m hoverslam_lib.course book FOLDER`` makes pages
-that any browser shows, without a network and without Python, and whose figures move.
+``checks.show_solution`` says there to ask the instructor, with ``--zip`` it makes one file of a new copy and of what
+has to be installed for it. ``python -m hoverslam_lib.course book FOLDER`` makes pages that any browser shows, without a
+network and without Python, and whose figures move; ``--withhold-solutions`` leaves out the solutions of the exercises
+there. ``python -m hoverslam_lib.course collect FOLDER`` judges the copies that students returned, and runs their code
+for it.
 """
 
 import argparse
@@ -13,7 +16,9 @@ import os
 import re
 import statistics
 import sys
+import tempfile
 import time
+import zipfile
 from importlib import metadata
 from pathlib import Path
 
@@ -21,6 +26,13 @@ NOTEBOOKS = Path(__file__).resolve().parent.parent / "notebooks"
 LONGEST_CELL = 15
 LARGEST_FILE = 700_000
 FOR_INSTRUCTORS = ("instructor_guide.md", "mission_control.ipynb")
+TO_INSTALL = (
+    *("environment.txt", "pyproject.toml", "LICENSE", "data/*.csv", "data/*.md", "hoverslam_lib/*.mplstyle"),
+    *("hoverslam_lib/**/*.py", "hoverslam_lib/**/*.md", "hoverslam_lib/book/static/*.*"),
+)
+"""What a copy needs beside it where nothing is installed."""
+HANDED_OUT = r"## If you were given one file\n.*?(?=\n## )"
+"""The README's section that is the README of a copy in one file."""
 
 
 def lessons(names=()):
@@ -93,7 +105,7 @@ def _without_outputs(path):
 
 
 def _clean(notebook):
-    """Keep what is the same on every machine: no versions, no timings, no random names of cells."""
+    """Keep what is the same in every run: no versions, no timings, no random names of cells, no addresses of films."""
     notebook.metadata = {
         "kernelspec": {"display_name": "Python 3 (ipykernel)", "language": "python", "name": "python3"},
         "language_info": {"name": "python"},
@@ -106,7 +118,10 @@ def _clean(notebook):
         for output in cell.get("outputs", []):
             if "metadata" in output:
                 output["metadata"] = {}
-            output.get("data", {}).pop("application/vnd.jupyter.widget-view+json", None)  # the still stays
+            data = output.get("data", {})
+            data.pop("application/vnd.jupyter.widget-view+json", None)  # the still stays
+            if "text/html" in data:
+                data["text/html"] = re.sub(r"(data:image/gif;base64,[\w+/=]+)#\d+", r"\1", data["text/html"])
         if "outputs" in cell:
             cell.outputs = [output for output in cell.outputs if output.get("data") != {}]
 
@@ -253,6 +268,52 @@ def _sources(for_teaching):
     return [path for path in found if path.is_file()]
 
 
+def zipped(folder, for_teaching=False, withhold_solutions=False):
+    """Make one file to hand out, ``FOLDER.zip``: a new copy with the library and what pip asks for; always the same.
+
+    Parameters
+    ----------
+    folder : path
+        The name of the folder that is in the file.
+    for_teaching, withhold_solutions : bool, optional
+        As for `copy`.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    ValueError
+        If the file is there already, or the place is in the course's own folders.
+    OSError
+        If the file system refuses.
+    """
+    folder, project = Path(folder), NOTEBOOKS.parent
+    target = folder.with_name(f"{folder.name.removesuffix('.zip')}.zip")
+    if os.path.lexists(target):
+        raise ValueError(f"{target} is there already and left as it is: name another")
+    _check_place(target, [])
+    with tempfile.TemporaryDirectory() as scratch:
+        made = Path(scratch, target.stem)
+        copy(made, for_teaching=for_teaching, withhold_solutions=withhold_solutions)
+        for source in (path for pattern in TO_INSTALL for path in project.glob(pattern)):
+            (made / source.relative_to(project)).parent.mkdir(parents=True, exist_ok=True)
+            (made / source.relative_to(project)).write_bytes(source.read_bytes())
+        readme = (project / "README.md").read_text(encoding="utf-8")
+        title, section = readme.partition("\n")[0], re.search(HANDED_OUT, readme, re.DOTALL).group()
+        (made / "README.md").write_text(f"{title}\n\n{section}", encoding="utf-8", newline="\n")
+        packed = Path(scratch, target.name)
+        with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as file:
+            for path in sorted(path for path in made.rglob("*") if path.is_file()):
+                member = zipfile.ZipInfo(path.relative_to(scratch).as_posix())  # of 1980, so no clock is in it
+                member.external_attr = 0o644 << 16
+                file.writestr(member, path.read_bytes(), zipfile.ZIP_DEFLATED)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        return _write(target, packed.read_bytes())
+
+
 def _check_place(folder, sources):
     """Refuse a folder in which a copy would do harm."""
     place = Path(os.path.realpath(folder))
@@ -305,15 +366,19 @@ def main(arguments=None):
     copying.add_argument("--lesson", help="number or name: a fresh copy of this lesson beside the edited one")
     copying.add_argument("--for-teaching", action="store_true", help="with outputs, guide and mission control")
     copying.add_argument("--withhold-solutions", action="store_true", help="show_solution says to ask the instructor")
+    copying.add_argument("--zip", action="store_true", help="one file to hand out, FOLDER.zip, with all it needs")
     booking = commands.add_parser("book", help="make pages for any browser, whose figures move without Python")
     booking.add_argument("folder")
     booking.add_argument("--for-students", action="store_true", help="without the instructor's guide")
     booking.add_argument("--open", action="store_true", help="show the answers to the predictions at once")
+    booking.add_argument("--withhold-solutions", action="store_true", help="without the solutions of the exercises")
+    collecting = commands.add_parser("collect", help="judge returned copies: runs the students' code, see the guide")
+    collecting.add_argument("folder", help="a folder or a zip a student in it; the tables are written there too")
+    collecting.add_argument("lesson", nargs="*", help="number or name; all lessons if left out")
     options = parser.parse_args(arguments)
+    run = {"refresh": _refresh_all, "copy": _copy_all, "book": _make_book, "collect": _collect_all}
     try:
-        if options.command == "refresh":
-            return _refresh_all(options.lesson)
-        return _copy_all(options) if options.command == "copy" else _make_book(options)
+        return run[options.command](options)
     except ValueError as error:
         print(error, file=sys.stderr)
     except OSError as error:
@@ -322,11 +387,11 @@ def main(arguments=None):
     return 2
 
 
-def _refresh_all(names):
+def _refresh_all(options):
     from nbclient.exceptions import CellExecutionError
 
     failed = 0
-    paths = lessons(names)
+    paths = lessons(options.lesson)
     for n, path in enumerate(paths, start=1):
         print(f"[{n}/{len(paths)}] {path.name} ", end="", flush=True)
         start = time.perf_counter()
@@ -358,7 +423,8 @@ def _make_book(options):
     try:
         from hoverslam_lib import book
 
-        book.build(lessons(), options.folder, for_students=options.for_students, unfold=options.open)
+        wanted = {"for_students": options.for_students, "unfold": options.open}
+        book.build(lessons(), options.folder, withhold_solutions=options.withhold_solutions, **wanted)
     except ModuleNotFoundError as error:
         raise ValueError(f"{error.name} is missing: run pip install -e '.[book]' in {NOTEBOOKS.parent}") from None
     print(f"wrote {Path(options.folder, 'index.html')}")
@@ -366,12 +432,31 @@ def _make_book(options):
 
 
 def _copy_all(options):
+    if options.zip and options.lesson:
+        raise ValueError("--lesson goes on with a copy that is there, and --zip makes a new one: choose one of them")
+    if options.zip:
+        print(f"wrote {zipped(options.folder, options.for_teaching, options.withhold_solutions)}")
+        return 0
     written = 0
     for path in _copying(Path(options.folder), options.lesson, options.for_teaching, options.withhold_solutions):
         print(f"wrote {path}", flush=True)
         written += 1
     if not written:
         print(f"{options.folder} is complete and left as it is; --lesson and a number put a fresh lesson beside yours")
+    return 0
+
+
+def _collect_all(options):
+    from hoverslam_lib import collect
+
+    folder, start = Path(options.folder), time.perf_counter()
+    number = len(collect.returned(folder))
+    all_of_them = [path for path in lessons() if re.match(r"\d\d_", path.name)]
+    asked = [path for path in lessons(options.lesson) if path in all_of_them]
+    for n, result in enumerate(collect.collect(folder, all_of_them, asked), start=1):
+        counts = ", ".join(f"{result.count(mark)} {mark}" for mark in "✔✘○")
+        print(f"[{n}/{number}] {result.student}: {counts} ({time.perf_counter() - start:.0f} s)", flush=True)
+    print(f"wrote {' and '.join(str(folder / name) for name in collect.TABLES)}")
     return 0
 
 

@@ -22,6 +22,10 @@ fig, ax = plt.subplots()
 ax.plot([0, 1], [0, 1], **plotting.line("rk4"))
 plotting.show(fig, alt="a line to 1")
 """
+FILM = """
+from hoverslam_lib.animation import Animation
+Animation(b"GIF", "a film of 1 s", (0.0,), (40,), 480)
+"""
 
 
 @pytest.fixture
@@ -37,6 +41,7 @@ def folder(tmp_path, monkeypatch):
     for name in ("01_first", "02_second"):
         cells = [nbformat.v4.new_markdown_cell("# 1"), nbformat.v4.new_code_cell("print('a')\nprint('b')")]
         cells.append(nbformat.v4.new_code_cell(FIGURE, metadata={"collapsed": True, "tags": ["kept"]}))
+        cells.append(nbformat.v4.new_code_cell(FILM))
         metadata = {"language_info": {"name": "python", "version": "3.2.1"}}
         nbformat.write(nbformat.v4.new_notebook(cells=cells, metadata=metadata), notebooks / f"{name}.ipynb")
     monkeypatch.setattr(course, "NOTEBOOKS", notebooks)
@@ -49,11 +54,12 @@ def test_refresh_executes_cleans_and_changes_nothing_the_second_time(folder, cap
     assert course.refresh(path) == []
     once = path.read_bytes()
     stored = nbformat.reads(once.decode(), as_version=4)
-    assert [cell.execution_count for cell in stored.cells[1:]] == [1, 2]
+    assert [cell.execution_count for cell in stored.cells[1:]] == [1, 2, 3]
     assert stored.cells[1].outputs[0].text == "a\nb\n"
     assert stored.cells[2].metadata == {"tags": ["kept"]}
     assert b"3.2.1" not in once
     assert 'alt="a line to 1"' in stored.cells[2].outputs[0].data["text/html"]
+    assert 'src="data:image/gif;base64,R0lG">' in stored.cells[3].outputs[0].data["text/html"]
     assert course.refresh(path) == []
     assert path.read_bytes() == once
     assert capfd.readouterr() == ("", ""), "neither the kernel nor who starts it has anything to say"
@@ -351,6 +357,77 @@ def test_readme_s_first_command_twice_makes_the_copy_and_goes_on_with_it(tmp_pat
     assert teach
     course.copy(place / "my_class", for_teaching=True)
     assert [name for name in teach if not (place / name).exists()] == []
+
+
+# ---- one file to hand out -----------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module", params=[[], ["--for-teaching"], ["--withhold-solutions"]], ids=" ".join)
+def handed_out(request, tmp_path_factory):
+    """A copy in one file, made with some options, and the folder in which it was unpacked."""
+    place = tmp_path_factory.mktemp("handed out")
+    assert course.main(["copy", str(place / "my class"), "--zip", *request.param]) == 0
+    assert [path.name for path in place.iterdir()] == ["my class.zip"]
+    shutil.unpack_archive(place / "my class.zip", place / "unpacked")
+    return request.param, place / "my class.zip", place / "unpacked" / "my class"
+
+
+def test_file_holds_a_copy_and_what_pip_needs_and_nothing_else(handed_out, tmp_path):
+    options, _, unpacked = handed_out
+    assert course.main(["copy", str(tmp_path / "mine"), *options]) == 0
+    found, copied = tree(unpacked), tree(tmp_path / "mine")
+    assert copied.items() <= found.items()
+    listed = subprocess.run(["git", "ls-files", "hoverslam_lib", "data"], cwd=ROOT, capture_output=True, text=True)
+    library = {*listed.stdout.split(), "environment.txt", "pyproject.toml", "LICENSE"}
+    assert {name: found[name] for name in library} == {name: (ROOT / name).read_bytes() for name in library}
+    assert found.keys() == copied.keys() | library | {"README.md"}
+
+
+def test_file_is_the_same_every_time(handed_out, tmp_path, monkeypatch):
+    options, file, _ = handed_out
+    monkeypatch.chdir(tmp_path)
+    assert course.main(["copy", "new/my class.zip", "--zip", *options]) == 0
+    assert (tmp_path / "new" / "my class.zip").read_bytes() == file.read_bytes()
+
+
+def test_exercise_answers_in_the_unpacked_folder_by_the_library_that_is_in_it(handed_out):
+    _, _, unpacked = handed_out
+    code = "from hoverslam_lib import checks, data; data.load('constants'); print(checks.__file__)"
+    code += "; print(checks.metres_per_second(lambda kmh: kmh / 3.6))"
+    command = [sys.executable, "-X", "utf8", "-c", code]
+    said = subprocess.run(command, cwd=unpacked, capture_output=True, text=True, encoding="utf-8").stdout
+    assert Path(said.splitlines()[0]).is_relative_to(unpacked)
+    assert "✔" in said
+
+
+def test_file_s_readme_opens_what_is_there(handed_out):
+    _, _, unpacked = handed_out
+    readme = (unpacked / "README.md").read_text(encoding="utf-8")
+    assert readme.startswith("# Landing a booster")
+    unix, windows = (
+        re.search(r"^(python3 .*)$", readme, re.MULTILINE).group(1),
+        re.search(r"`(py .*)`", readme).group(1),
+    )
+    assert windows == unix.replace("python3", "py").replace("/bin/", "/Scripts/").replace("/", "\\")
+    install, opened = re.search(r"install -r (\S+) && \S+jupyter lab (\S+)$", unix).groups()
+    assert (unpacked / install).exists()
+    assert (unpacked / opened).exists()
+    assert "hoverslam_lib.course" not in readme, "there are no lessons to copy from"
+
+
+@pytest.mark.parametrize("options", [["--zip"], ["--zip", "--for-teaching"], ["--zip", "--lesson", "1"]])
+def test_file_that_is_there_is_left_as_it_is(tmp_path, capsys, options):
+    (tmp_path / "mine.zip").write_text("my work")
+    assert course.main(["copy", str(tmp_path / "mine"), *options]) == 2
+    assert re.fullmatch(r".*(name another|choose one of them)\n", capsys.readouterr().err)
+    assert tree(tmp_path) == {"mine.zip": b"my work"}
+
+
+@pytest.mark.parametrize("where", ["notebooks/mine", "tests/mine"])
+def test_file_among_the_course_s_own_is_refused(capsys, where):
+    assert course.main(["copy", str(ROOT / where), "--zip"]) == 2
+    assert "own folder" in capsys.readouterr().err
+    assert not (ROOT / f"{where}.zip").exists()
 
 
 # ---- pages --------------------------------------------------------------------------------------------------------

@@ -50,7 +50,7 @@ WRONG = {
         (lambda dt, error, q: dt if error <= 1 else dt / 2, None),
     ],
     "15.2": [(_times_alone, None), (lambda *arguments: _until_it_fits(*arguments)[1:], "the start is missing")],
-    "15.3": [(lambda *arguments: _as_a_pair(*arguments, extrapolate=True), None)],
+    "15.3": [(lambda *arguments: _as_a_pair(*arguments, extrapolate=True), "corrected")],
 }
 
 RIGHT = {"15.1": [_rule], "15.2": [_until_it_fits], "15.3": [_as_a_pair]}

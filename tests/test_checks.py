@@ -258,7 +258,7 @@ def test_hint_and_place_of_every_case_can_be_told(number):
 
 
 def test_lessons_from_1_on_have_three_exercises_each():
-    expected = [f"{lesson}.{place}" for lesson in range(1, 14) for place in (1, 2, 3)]
+    expected = [f"{lesson}.{place}" for lesson in range(1, 16) for place in (1, 2, 3)]
     assert ["0.1", *expected] == NUMBERS
 
 

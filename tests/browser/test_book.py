@@ -191,6 +191,19 @@ def test_no_line_is_cut_in_print(chromium, made):
     page.close()
 
 
+def test_prediction_sheet_prints_a_lesson_a_page(chromium, made):
+    page = chromium.new_page()
+    page.goto((made / "prediction_sheet.html").as_uri())
+    page.wait_for_selector("mjx-container")
+    rooms, lessons = page.locator(".write"), page.locator("section section")
+    printed = page.pdf(format="A4")
+    assert len(re.findall(rb"/Type /Page\b", printed)) == 1 + lessons.count() > 10
+    page.emulate_media(media="print")
+    assert rooms.count() > 30
+    assert min(room.bounding_box()["height"] for room in rooms.all()) > 38, "a centimetre to write in"
+    page.close()
+
+
 def test_menu_and_contents_open_on_a_phone(page, made):
     page.goto((made / "03_symplectic_euler.html").as_uri())
     if page.viewport_size["width"] != 390:

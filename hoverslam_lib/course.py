@@ -27,8 +27,8 @@ LONGEST_CELL = 15
 LARGEST_FILE = 700_000
 FOR_INSTRUCTORS = ("instructor_guide.md", "mission_control.ipynb")
 TO_INSTALL = (
-    *("environment.txt", "pyproject.toml", "LICENSE", "data/*.csv", "data/*.md", "hoverslam_lib/*.mplstyle"),
-    *("hoverslam_lib/**/*.py", "hoverslam_lib/**/*.md", "hoverslam_lib/book/static/*.*"),
+    *("environment.txt", "pyproject.toml", "LICENSE", "data/*.csv", "data/*.md"),
+    *(f"hoverslam_lib/**/*.{kind}" for kind in ("py", "md", "css", "js", "mplstyle")),
 )
 """What a copy needs beside it where nothing is installed."""
 HANDED_OUT = r"## If you were given one file\n.*?(?=\n## )"

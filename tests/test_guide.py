@@ -8,7 +8,7 @@ from typing import NamedTuple
 import nbformat
 import pytest
 
-from hoverslam_lib import course
+from hoverslam_lib import book, course
 
 GUIDE = (course.NOTEBOOKS / "instructor_guide.md").read_text(encoding="utf-8")
 MISSION_CONTROL = "mission_control"
@@ -80,3 +80,15 @@ def test_score_leads_to_what_is_there_and_quotes_what_is_printed(name):
         said = re.sub(r"\*\*[\d.]+\*\*|“[^”]*”|\"[^\"]*\"", "", f"{row.show} {row.ask} {row.answer}").replace("−", "-")
         for number in re.findall(r"-?\d+[.,]\d+(?:e-\d+)?|-?\d{3,}", said):
             assert number in text or number.replace(",", "") in text, (number, row)
+
+
+def test_prediction_sheet_has_room_for_each_prediction_of_the_lessons():
+    sheet = book.prediction_sheet(course.lessons())
+    lessons = re.findall(r"^## (\d+) · ((?:.|\n)*?)(?=^## |\Z)", sheet, re.MULTILINE)
+    assert [int(number) for number, _ in lessons] == list(range(len(lessons)))
+    for number, page in lessons:
+        cells = nbformat.read(course.lessons([number])[0], as_version=4).cells
+        asked = [cell.source.strip().split("\n\n")[-1] for cell in cells if "**Predict" in cell.source]
+        *questions, end = page.split('<div class="write"></div>')
+        assert [question.split("\n\n", 1)[1].strip() for question in questions] == asked != []
+        assert end.strip() == ""

@@ -421,6 +421,19 @@ def test_films_are_stopped_at_their_last_picture_and_played_again_from_the_first
     page.close()
 
 
+def test_prediction_sheet_prints_a_lesson_a_page(chromium, made):
+    page = chromium.new_page()
+    page.goto((made / "prediction_sheet.html").as_uri())
+    page.wait_for_selector("mjx-container")
+    rooms, lessons = page.locator(".write"), page.locator("section section")
+    printed = page.pdf(format="A4")
+    assert len(re.findall(rb"/Type /Page\b", printed)) == 1 + lessons.count() > 10
+    page.emulate_media(media="print")
+    assert rooms.count() > 30
+    assert min(room.bounding_box()["height"] for room in rooms.all()) > 38, "a centimetre to write in"
+    page.close()
+
+
 def packed(image):
     return io.BytesIO(base64.b64decode(image.get_attribute("src").partition(",")[2].partition("#")[0]))
 

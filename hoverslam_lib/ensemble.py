@@ -377,12 +377,10 @@ class _Fall:
         if end == "space":
             raise never_comes_down(*nodes[-1][1:])
         self._nodes = np.array(nodes).T
-        self._last = len(nodes) - (2 if end == "ground" else 1)  # the impact lies in the step after it
 
     def before(self, t_ignite):
-        """The last node before each ignition, and before the impact: t, h, v."""
-        i = np.searchsorted(self._nodes[0], t_ignite) - 1
-        return self._nodes[:, np.clip(i, 0, self._last)]
+        """The last node before each ignition: t, h, v. After the impact that is the impact, and the march ends there."""
+        return self._nodes[:, np.maximum(np.searchsorted(self._nodes[0], t_ignite) - 1, 0)]
 
 
 def _column(value, n):

@@ -29,6 +29,7 @@ ORDER = [
     "mission_control",
     "checks",
     "book",
+    "collect",
     "course",
 ]
 MODULES = {path.stem: path for path in FOLDER.glob("*.py") if path.stem != "__init__"}

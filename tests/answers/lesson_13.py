@@ -87,7 +87,7 @@ WRONG = {
         (_of_all_flights, "remembers its last call"),
         (lambda h, v, mass, memory: memory["h"], None),
         (lambda h, v, mass, memory: math.sqrt(v), None),
-        (lambda *a: 1e6 * _steady(*a), None),
+        (lambda *a: 1e6 * _steady(*a), "stops too high"),
         (lambda h, v, mass, memory: print(0.7), None),
         (lambda *a: f"{_velocity(*a):.2f}", None),
     ],

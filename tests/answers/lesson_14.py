@@ -26,7 +26,7 @@ def _slanted(formula):
 WRONG = {
     "14.1": [
         ((0.91, 1.45, 0), "weight forgotten"),
-        ((1.6, 1.78, 0), "upside down"),
+        ((1.6, 1.77, 0), "upside down"),
         ((1.6, 1.45, -5), None),
         ((1604, 1449, 0), None),
         ((1.604, 1.449, None), None),

@@ -379,7 +379,7 @@ class _Fall:
         self._nodes = np.array(nodes).T
 
     def before(self, t_ignite):
-        """The last node before each ignition: t, h, v. After the impact that is the impact: the march ends."""
+        """The last node before each ignition: t, h, v; after the impact the impact, where the march ends at once."""
         return self._nodes[:, np.maximum(np.searchsorted(self._nodes[0], t_ignite) - 1, 0)]
 
 

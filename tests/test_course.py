@@ -335,6 +335,7 @@ def test_readme_makes_copies_and_opens_them():
         "copy my_course",
         "copy my_course --lesson 9",
         "copy my_class --for-teaching",
+        "copy my_course --zip",
     ]
     (_, unix, opened), (_, windows, opened_there) = COPIES[:2]
     assert (unix, opened) == (".venv/bin/", "my_course/00_start_here.ipynb")

@@ -2,6 +2,7 @@
 
 from hoverslam_lib.booster import FALCON_9, FALCON_9_LANDING_BURN, Booster
 from hoverslam_lib.descent import LANDING_BURN, OUTCOMES, SOFT_SPEED, Descent, Flight, fly, speed_after_fall
+from hoverslam_lib.ensemble import fly_all
 from hoverslam_lib.ignition import FreeFall, Ignition, NoSoftLanding, best_ignition, hover_height, ignition_table
 from hoverslam_lib.integrators import METHODS, Method
 from hoverslam_lib.metrics import mape, max_error, nmae, observed_order, rmse
@@ -31,6 +32,7 @@ __all__ = [
     "Trajectory",
     "best_ignition",
     "fly",
+    "fly_all",
     "hover_height",
     "ignition_table",
     "integrate",

@@ -1,6 +1,8 @@
-"""Root of a continuous function in a bracket."""
+"""Root of a continuous function in a bracket: of one, and of many at once."""
 
 import math
+
+import numpy as np
 
 
 def bracketed_root(g, a, b, ga, gb, *, xtol=0.0):
@@ -46,3 +48,33 @@ def bracketed_root(g, a, b, ga, gb, *, xtol=0.0):
         if phi**2 < xi and (1 - phi) ** 2 < 1 - xi:
             fraction = ga / (gb - ga) * gc / (gb - gc) + (c - a) / (b - a) * ga / (gc - ga) * gb / (gc - gb)
         fraction = min(max(fraction, smallest_fraction), 1 - smallest_fraction)
+
+
+def bracketed_roots(g, a, b, ga, gb, *, xtol=0.0):
+    """Return for each lane of an array what `bracketed_root` returns, with g a function of an array x.
+
+    Each lane is left alone as soon as its root is found, so that it does not depend on the others.
+    """
+    a, b, ga, gb, xtol = (np.array(x, dtype=float) for x in np.broadcast_arrays(b, a, gb, ga, xtol))
+    x, c, gc, found = a.copy(), a, ga, (ga == 0) | (gb == 0)
+    x[gb == 0] = b[gb == 0]
+    with np.errstate(all="ignore"):  # of lanes that are found, and of values that are infinite
+        fraction = np.clip(np.where(np.isfinite(ga - gb), ga / (ga - gb), 0.5), 0.01, 0.99)
+        while not found.all():
+            x = np.where(found, x, a + fraction * (b - a))
+            gx = g(x)
+            same = (gx < 0) == (ga < 0)
+            b, c, gb, gc = np.where(same, b, a), np.where(same, a, b), np.where(same, gb, ga), np.where(same, ga, gb)
+            a, ga = x, gx
+
+            nearer = abs(ga) < abs(gb)
+            best, g_best = np.where(nearer, a, b), np.where(nearer, ga, gb)
+            smallest = np.where(a != b, np.maximum(xtol, 2 * np.spacing(abs(best))) / abs(b - a), 1.0)
+            ends = ~found & ((g_best == 0) | (smallest > 0.5))
+            x, found = np.where(ends, best, x), found | ends
+
+            xi, phi = (a - b) / (c - b), (ga - gb) / (gc - gb)
+            fraction = ga / (gb - ga) * gc / (gb - gc) + (c - a) / (b - a) * ga / (gc - ga) * gb / (gc - gb)
+            fraction = np.where((phi * phi < xi) & ((1 - phi) * (1 - phi) < 1 - xi), fraction, 0.5)
+            fraction = np.minimum(np.maximum(fraction, smallest), 1 - smallest)
+    return x

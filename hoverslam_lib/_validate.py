@@ -34,6 +34,36 @@ def number(name, value, unit="", *, above=-math.inf, least=-math.inf, most=math.
     return result
 
 
+def is_column(value):
+    """Whether a value is an array of one axis: a number for each row of an ensemble."""
+    return getattr(value, "ndim", 0) == 1
+
+
+def number_or_column(name, value, unit="", **limits):
+    """Raise unless `value` is what `number` lets pass, or a column of such numbers (an array, a pandas Series)."""
+    if not is_column(value):
+        number(name, value, unit, **limits)
+        return
+    numbers = np.asarray(value)
+    if numbers.dtype.kind not in "iuf":
+        raise TypeError(f"{name} must be a column of finite numbers; got one of {numbers.dtype}")
+    good = np.isfinite(numbers)
+    for limit, within in (("above", np.greater), ("least", np.greater_equal), ("most", np.less_equal)):
+        if limit in limits:
+            good &= within(numbers, limits[limit])
+    if not good.all():
+        row = int(np.argmin(good))
+        label = value.index[row] if hasattr(value, "iloc") else row
+        number(f"{name} in row {label}", numbers[row].item(), unit, **limits)
+
+
+def one_length(columns):
+    """Raise unless all columns, given by name, have as many rows."""
+    if len({len(column) for column in columns.values()}) > 1:
+        rows = ", ".join(f"{name} has {len(column)}" for name, column in columns.items())
+        raise ValueError(f"all columns must have the same number of rows: {rows}")
+
+
 def state(name, value, unit=""):
     """Return a finite float, or a float array of finite numbers: an initial value of a run."""
     if isinstance(value, Real):

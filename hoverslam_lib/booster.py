@@ -5,26 +5,28 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hoverslam_lib import _validate
+from hoverslam_lib import _columns, _validate
 
 
 @dataclass(frozen=True)
 class Booster:
     """A booster whose engine burns at one rate with one thrust (eq. 1.2 and section 1.3 of the paper).
 
+    Each number may be a column, an array with one number for each row of an ensemble; see `fly_all`.
+
     Parameters
     ----------
-    dry_mass : float
+    dry_mass : float or ndarray, shape (n,)
         m_d [kg], greater than 0.
-    propellant_mass : float
+    propellant_mass : float or ndarray, shape (n,)
         m_p [kg] before ignition, greater than 0.
-    burn_rate : float
+    burn_rate : float or ndarray, shape (n,)
         b, propellant used at full throttle [kg/s], greater than 0.
-    thrust : float
+    thrust : float or ndarray, shape (n,)
         T at full throttle [N], greater than 0.
-    drag_coefficient : float
+    drag_coefficient : float or ndarray, shape (n,)
         C_D, dimensionless, at least 0.
-    radius : float
+    radius : float or ndarray, shape (n,)
         Of the circular cross-section [m], greater than 0.
     """
 
@@ -36,12 +38,15 @@ class Booster:
     radius: float
 
     def __post_init__(self):
-        _validate.number("dry_mass", self.dry_mass, "kg", above=0)
-        _validate.number("propellant_mass", self.propellant_mass, "kg", above=0)
-        _validate.number("burn_rate", self.burn_rate, "kg/s", above=0)
-        _validate.number("thrust", self.thrust, "N", above=0)
-        _validate.number("drag_coefficient", self.drag_coefficient, least=0)
-        _validate.number("radius", self.radius, "m", above=0)
+        _validate.number_or_column("dry_mass", self.dry_mass, "kg", above=0)
+        _validate.number_or_column("propellant_mass", self.propellant_mass, "kg", above=0)
+        _validate.number_or_column("burn_rate", self.burn_rate, "kg/s", above=0)
+        _validate.number_or_column("thrust", self.thrust, "N", above=0)
+        _validate.number_or_column("drag_coefficient", self.drag_coefficient, least=0)
+        _validate.number_or_column("radius", self.radius, "m", above=0)
+        _validate.one_length(_columns.columns(self))
+
+    __eq__, __repr__ = _columns.equal, _columns.shown
 
     @property
     def area(self):
@@ -60,12 +65,10 @@ class Booster:
 
     def mass(self, burn_time):
         """Mass [kg] after burn_time [s] at full throttle, float or array: eq. 1.2, until the tank is empty."""
-        clip = np.clip if isinstance(burn_time, np.ndarray) else _clip
-        return self.initial_mass - self.burn_rate * clip(burn_time, 0.0, self.burn_duration)
-
-
-def _clip(x, low, high):
-    return min(max(x, low), high)
+        duration = self.burn_duration
+        floats = not np.ndim(burn_time) and not np.ndim(duration)
+        burnt = min(max(burn_time, 0.0), duration) if floats else np.clip(burn_time, 0.0, duration)
+        return self.initial_mass - self.burn_rate * burnt
 
 
 FALCON_9 = Booster(

@@ -5,9 +5,10 @@ checks what they store. ``python -m hoverslam_lib.course copy FOLDER`` makes a s
 that git leaves alone, or goes on with the one that is there; with ``--lesson 3`` it puts a fresh lesson beside the
 edited one, with ``--for-teaching`` it keeps the outputs and adds what instructors need, with ``--withhold-solutions``
 ``checks.show_solution`` says there to ask the instructor, with ``--zip`` it makes one file of a new copy and of what
-has to be installed for it. ``python -m hoverslam_lib.course book FOLDER`` makes pages
-that any browser shows, without a network and without Python, and whose figures move. ``python -m hoverslam_lib.course
-collect FOLDER`` judges the copies that students returned, and runs their code for it.
+has to be installed for it. ``python -m hoverslam_lib.course book FOLDER`` makes pages that any browser shows, without a
+network and without Python, and whose figures move; ``--withhold-solutions`` leaves out the solutions of the exercises
+there. ``python -m hoverslam_lib.course collect FOLDER`` judges the copies that students returned, and runs their code
+for it.
 """
 
 import argparse
@@ -104,7 +105,7 @@ def _without_outputs(path):
 
 
 def _clean(notebook):
-    """Keep what is the same on every machine: no versions, no timings, no random names of cells."""
+    """Keep what is the same in every run: no versions, no timings, no random names of cells, no addresses of films."""
     notebook.metadata = {
         "kernelspec": {"display_name": "Python 3 (ipykernel)", "language": "python", "name": "python3"},
         "language_info": {"name": "python"},
@@ -117,7 +118,10 @@ def _clean(notebook):
         for output in cell.get("outputs", []):
             if "metadata" in output:
                 output["metadata"] = {}
-            output.get("data", {}).pop("application/vnd.jupyter.widget-view+json", None)  # the still stays
+            data = output.get("data", {})
+            data.pop("application/vnd.jupyter.widget-view+json", None)  # the still stays
+            if "text/html" in data:
+                data["text/html"] = re.sub(r"(data:image/gif;base64,[\w+/=]+)#\d+", r"\1", data["text/html"])
         if "outputs" in cell:
             cell.outputs = [output for output in cell.outputs if output.get("data") != {}]
 
@@ -367,6 +371,7 @@ def main(arguments=None):
     booking.add_argument("folder")
     booking.add_argument("--for-students", action="store_true", help="without the instructor's guide")
     booking.add_argument("--open", action="store_true", help="show the answers to the predictions at once")
+    booking.add_argument("--withhold-solutions", action="store_true", help="without the solutions of the exercises")
     collecting = commands.add_parser("collect", help="judge returned copies: runs the students' code, see the guide")
     collecting.add_argument("folder", help="a folder or a zip a student in it; the tables are written there too")
     collecting.add_argument("lesson", nargs="*", help="number or name; all lessons if left out")
@@ -418,7 +423,8 @@ def _make_book(options):
     try:
         from hoverslam_lib import book
 
-        book.build(lessons(), options.folder, for_students=options.for_students, unfold=options.open)
+        wanted = {"for_students": options.for_students, "unfold": options.open}
+        book.build(lessons(), options.folder, withhold_solutions=options.withhold_solutions, **wanted)
     except ModuleNotFoundError as error:
         raise ValueError(f"{error.name} is missing: run pip install -e '.[book]' in {NOTEBOOKS.parent}") from None
     print(f"wrote {Path(options.folder, 'index.html')}")

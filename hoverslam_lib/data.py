@@ -1,4 +1,4 @@
-"""The tables in the folder ``data/``: what the paper prints, constants, the standard atmosphere."""
+"""The tables in the folder ``data/``: what the paper prints, constants, the standard atmosphere, real landings."""
 
 from pathlib import Path
 

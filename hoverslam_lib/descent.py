@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from hoverslam_lib import _validate
+from hoverslam_lib import _columns, _validate
 from hoverslam_lib._roots import bracketed_root
 from hoverslam_lib.booster import FALCON_9, FALCON_9_LANDING_BURN, Booster
 from hoverslam_lib.integrators import step_function
@@ -26,13 +26,17 @@ OUTCOMES = (SOFT_LANDING, CRASH, STOPPED_TOO_HIGH, OUT_OF_PROPELLANT)
 class Descent:
     """A booster above a planet, before anything is said of its engine.
 
+    Its numbers, and those of booster and planet, may be columns: arrays of one length, with one number for each row
+    of an ensemble. `fly` flies one descent, `fly_all` all rows. Two descents are equal if all their numbers are; one
+    with columns has no hash.
+
     Parameters
     ----------
     booster : Booster
     planet : Planet
-    height : float
+    height : float or ndarray, shape (n,)
         h at t = 0 [m], greater than 0.
-    velocity : float
+    velocity : float or ndarray, shape (n,)
         v = dh/dt at t = 0 [m/s], negative while falling.
     """
 
@@ -45,8 +49,27 @@ class Descent:
         for name, kind in (("booster", Booster), ("planet", Planet)):
             if not isinstance(getattr(self, name), kind):
                 raise TypeError(f"{name} must be a {kind.__name__}; got {getattr(self, name)!r}")
-        _validate.number("height", self.height, "m", above=0)
-        _validate.number("velocity", self.velocity, "m/s")
+        _validate.number_or_column("height", self.height, "m", above=0)
+        _validate.number_or_column("velocity", self.velocity, "m/s")
+        _validate.one_length(self.columns)
+
+    __eq__, __repr__ = _columns.equal, _columns.shown
+
+    @cached_property
+    def columns(self):
+        """Those of the numbers that are columns: a dictionary of name, as ``booster.thrust``, and column."""
+        parts = (("booster.", self.booster), ("planet.", self.planet), ("", self))
+        return {prefix + name: column for prefix, part in parts for name, column in _columns.columns(part).items()}
+
+    def rows(self, which):
+        """The descent of some rows of the columns, given as a slice or an array of their numbers.
+
+        Of one row, given its number, it is a descent of floats, as `fly` takes it; without columns it is this one.
+        """
+        if not self.columns:
+            return self
+        booster, planet = _columns.rows(self.booster, which), _columns.rows(self.planet, which)
+        return _columns.rows(self, which, booster=booster, planet=planet)
 
     def drag(self, h, v):
         """Force of the air [N] at height h [m] and velocity v [m/s], upward positive: it opposes the motion."""
@@ -81,29 +104,34 @@ class Descent:
         def burning(t, h, v):
             return (thrust - drag_area * density(h) * abs(v) * v) / (mass - rate * (t - since)) - gravity(h)
 
-        return burning if throttle else coasting
+        return burning if _validate.is_column(throttle) or throttle else coasting
+
+    def acceleration_when_dry(self):
+        """Return f(t, h, v) [m/s²] at full thrust and at the dry mass, which stays: see `hover_height`."""
+        thrust, drag, dry_mass, gravity = self.booster.thrust, self.drag, self.booster.dry_mass, self.planet.gravity
+        return lambda t, h, v: (thrust + drag(h, v)) / dry_mass - gravity(h)
 
     @cached_property
     def _drag_area(self):
         return 0.5 * self.booster.drag_coefficient * self.booster.area
 
-    def _escapes(self, h, v):
+    def escapes(self, h, v):
         """Whether a booster that coasts upward can never turn round, for certain.
 
         The air above takes at most ½·C_D·A·ρ·H·v² of its energy, H being the scale height.
         """
         lost = self._drag_area * self.planet.air_density(h) * self.planet.scale_height / self.booster.initial_mass
-        return v > 0 and v * v * (0.5 - lost) >= self.planet.gravity(h) * (self.planet.radius + h)
+        return (v > 0) & (v * v * (0.5 - lost) >= self.planet.gravity(h) * (self.planet.radius + h))
 
-    def _shortest_fall(self):
+    def shortest_fall(self):
         """A time before which no flight can end on the ground [s]: no air, and gravity everywhere as strong as there.
 
         Of an ascent only the fall from the start on counts, because air can make the rest as short as it likes.
         """
-        if self._escapes(self.height, self.velocity):
-            return math.inf
-        down = max(-self.velocity, 0.0)
-        return 2 * self.height / (down + math.sqrt(down**2 + 2 * self.planet.gravity(0.0) * self.height))
+        down = (abs(self.velocity) - self.velocity) / 2
+        fall = 2 * self.height / (down + (down**2 + 2 * self.planet.gravity(0.0) * self.height) ** 0.5)
+        escapes = self.escapes(self.height, self.velocity)
+        return np.where(escapes, math.inf, fall) if _validate.is_column(escapes) else math.inf if escapes else fall
 
 
 def speed_after_fall(planet, h, v=0.0):
@@ -253,21 +281,35 @@ def fly(descent, t_ignite, *, dt=0.02, method="rk4", controller=None):
         If an argument is not allowed, if the flight would take more than ten million steps, if dt is so large that
         the numbers overflow or a climb ends on the ground, or if the booster never comes down.
     """
-    if not isinstance(descent, Descent):
-        raise TypeError(f"descent must be a Descent; got {descent!r}")
+    require_one_descent(descent)
+    if _validate.is_column(t_ignite):
+        raise TypeError("t_ignite must be one time [s]; got a column: `fly_all` flies one flight a row")
     if t_ignite is not None:
         t_ignite = _validate.number("t_ignite", t_ignite, "s", least=0)
     dt = _validate.number("dt", dt, "s", above=0)
     t_coast = math.inf if t_ignite is None else t_ignite
-    at_least = min(descent._shortest_fall(), t_coast + descent.booster.burn_duration)
+    at_least = min(descent.shortest_fall(), t_coast + descent.booster.burn_duration)
     if at_least < math.inf:
         _validate.step_count(at_least, dt)
     step = step_function(method)
     coasted, end = coast(descent, t_coast, dt=dt, step=step)
     if end == "space":
-        _, h, v = coasted[-1]
-        raise ValueError(f"the booster never comes down: at h = {h:.0f} m it still climbs at {v:.0f} m/s")
+        raise never_comes_down(*coasted[-1][1:])
     return finish(descent, t_ignite, np.array(coasted), end, controller, dt=dt, step=step)
+
+
+def never_comes_down(h, v):
+    """The error of a free fall that has no end."""
+    return ValueError(f"the booster never comes down: at h = {h:.0f} m it still climbs at {v:.0f} m/s")
+
+
+def require_one_descent(descent):
+    """Raise unless `descent` is a Descent without columns."""
+    if not isinstance(descent, Descent):
+        raise TypeError(f"descent must be a Descent; got {descent!r}")
+    if descent.columns:
+        names = ", ".join(descent.columns)
+        raise TypeError(f"descent must be one descent; got columns ({names}): `fly_all` flies one flight a row")
 
 
 def finish(descent, t_ignite, coasted, end, controller=None, *, dt, step):
@@ -300,20 +342,16 @@ def coast(descent, t_end, *, dt, step, start=None):
     end : str
         What the last of them is: "time" (t_end), "ground", or "space", from where it never comes down.
     """
-    f = descent.acceleration()
-    t, h, v = start or (0.0, float(descent.height), float(descent.velocity))
-    nodes = [(t, h, v)]
-    for t_next in time_grid(t, t_end, dt):
-        if v > 0 and t_end == math.inf and descent._escapes(h, v):
+    f, nodes = descent.acceleration(), []
+    start = start or (0.0, float(descent.height), float(descent.velocity))
+    for t, h, v, event in walk(step, f, start, t_end, dt=dt):
+        if nodes and t == nodes[-1][0]:  # the step was shorter than the last digit of t
+            nodes.pop()
+        nodes.append((t, h, v))
+        if event == "ground":
+            return nodes, "ground"
+        if v > 0 and t_end == math.inf and descent.escapes(h, v):
             return nodes, "space"
-        while t < t_next:
-            s, h, v, event = advance(step, f, t, h, v, t_next - t)
-            t = t_next if event is None else min(t + s, t_next)
-            if t == nodes[-1][0]:  # shorter than the last digit of t
-                nodes.pop()
-            nodes.append((t, h, v))
-            if event == "ground":
-                return nodes, "ground"
     return nodes, "time"
 
 
@@ -321,34 +359,27 @@ def _burn(descent, t, h, v, controller, *, dt, step):
     """Burn from (t, h, v) until the ground is reached or the tank is empty: nodes, landed, hover."""
     booster = descent.booster
     mass, throttle, hover, nodes = booster.initial_mass, None, None, []
-    for t_next in time_grid(t, math.inf, dt):
+    for t_next in (math.inf,) if controller is None else time_grid(t, math.inf, dt):
         asked = 1.0 if controller is None else _ask(controller, t, h, v, mass)
         if asked != throttle:
             throttle, rate, since, mass_then = asked, asked * booster.burn_rate, t, mass
             f = descent.acceleration(throttle=throttle, mass=mass, since=since)
             t_empty = since + (mass - booster.dry_mass) / rate if rate else math.inf
-        t_next = min(t_next, t_empty)
-        rests = v == 0 and throttle > 0 and f(t, h, v) >= 0
-        while True:
-            if rests:
-                if fall := _soft_fall(descent.planet, t, h, v, mass):
-                    return [*nodes, *fall], True, (t, h)
-                hover = hover or (t, h)
-            if t >= t_next:
-                break
-            nodes.append((t, h, v, mass, throttle))
-            falling = v < 0
-            s, h, v, event = advance(step, f, t, h, v, t_next - t)
-            t = t_next if event is None else min(t + s, t_next)
-            if t == nodes[-1][0]:  # shorter than the last digit of t
+        start = t, h, v
+        for t, h, v, event in walk(step, f, start, min(t_next, t_empty), dt=dt):
+            if nodes and t == nodes[-1][0]:  # asked anew there, or the step was shorter than the last digit of t
                 nodes.pop()
             mass = mass_then - rate * (t - since)
+            nodes.append((t, h, v, mass, throttle))
             if event == "ground":
-                return [*nodes, (t, h, v, mass, throttle)], True, hover
-            rests = event == "turn" and falling and throttle > 0
+                return nodes, True, hover
+            if event == "stop" and throttle > 0:
+                if fall := _soft_fall(descent.planet, t, h, v, mass):
+                    return nodes[:-1] + fall, True, (t, h)
+                hover = hover or (t, h)
         if t >= t_empty:
             fall = _soft_fall(descent.planet, t, h, v, booster.dry_mass)
-            return [*nodes, *(fall or [(t, h, v, booster.dry_mass, throttle)])], bool(fall), hover
+            return nodes[:-1] + (fall or [(t, h, v, booster.dry_mass, throttle)]), bool(fall), hover
 
 
 def _soft_fall(planet, t, h, v, mass):
@@ -360,6 +391,25 @@ def _soft_fall(planet, t, h, v, mass):
     ground = (t_ground, 0.0, 0.0 - speed, mass, 0.0)
     # time stands still where the fall is shorter than the last digit of t
     return [(t, h, v, mass, 0.0), ground] if t_ground > t else [ground]
+
+
+def walk(step, f, start, t_end, *, dt, ground=0.0):
+    """Walk a phase of a flight, one acceleration f, in steps of dt from the node start = (t, h, v) to t_end.
+
+    Yields
+    ------
+    t, h, v : float
+        The start, then the end of each step, or of the parts that events divide it into [s, m, m/s].
+    event : str or None
+        As `advance` returns; "stop" too for a start at rest from which it does not fall.
+    """
+    t, h, v = start
+    yield t, h, v, "stop" if v == 0 and f(t, h, v) >= 0 else None
+    for t_next in time_grid(t, t_end, dt) if t_end - t > dt else (t_end,):
+        while t < t_next:
+            s, h, v, event = advance(step, f, t, h, v, t_next - t, ground=ground)
+            t = t_next if event is None else min(t + s, t_next)
+            yield t, h, v, event
 
 
 def advance(step, f, t, h, v, dt, *, ground=0.0):
@@ -376,7 +426,7 @@ def advance(step, f, t, h, v, dt, *, ground=0.0):
     h, v : float
         State at its end [m, m/s].
     event : str or None
-        "turn" (v has changed sign; it is 0 now), "ground" (h is 0 now), or None.
+        "stop" (of a fall) or "apex" (of a climb): v has changed sign and is 0 now; "ground": h is 0 now; or None.
 
     Raises
     ------
@@ -402,7 +452,7 @@ def advance(step, f, t, h, v, dt, *, ground=0.0):
         end = bracketed_root(lambda s: to(s)[1], 0.0, dt, v, v_end, xtol=1e-14 * dt)
         h_end, _ = to(end)
         if h_end >= ground:
-            return end, h_end, 0.0, "turn"
+            return end, h_end, 0.0, "stop" if v < 0 else "apex"
     end = bracketed_root(lambda s: to(s)[0] - ground, 0.0, end, h - ground, h_end - ground)
     v_end = to(end)[1]
     if v_end > 0:

@@ -11,9 +11,9 @@ import numpy as np
 
 from hoverslam_lib import _validate
 from hoverslam_lib._roots import bracketed_root
-from hoverslam_lib.descent import Descent, StepTooLargeError, advance, coast, finish, fly
+from hoverslam_lib.descent import Descent, StepTooLargeError, coast, finish, fly, require_one_descent, walk
 from hoverslam_lib.integrators import dop8, rk4, step_function
-from hoverslam_lib.trajectory import rounding, time_grid
+from hoverslam_lib.trajectory import rounding
 
 NEAR_ZERO = 1e-6
 """A hover no further from the ground than this share of the height at the start is taken for one at the ground."""
@@ -90,10 +90,10 @@ def hover_height(descent, t_ignite, *, dt=0.02, method="rk4"):
     NoSoftLanding
         If thrust does not exceed the dry weight.
     """
-    _require_descent(descent)
+    require_one_descent(descent)
     dt = _validate.number("dt", dt, "s", above=0)
     t_ignite = _validate.number("t_ignite", t_ignite, "s", least=0)
-    _validate.step_count(min(t_ignite, descent._shortest_fall()), dt)
+    _validate.step_count(min(t_ignite, descent.shortest_fall()), dt)
     step = step_function(method)
     _require_thrust(descent)
     nodes, end = coast(descent, t_ignite, dt=dt, step=step)
@@ -174,7 +174,7 @@ def best_ignition(descent):
     NoSoftLanding
         With its reason and by how much.
     """
-    _require_descent(descent)
+    require_one_descent(descent)
     _require_thrust(descent)
     found = None
     for n in range(14):
@@ -246,11 +246,6 @@ def ignition_table(t_ignite, *, dt, methods=("rk4", "symplectic_euler"), descent
     return pd.DataFrame(rows, index=pd.Index(times, name="t_ignite [s]"), columns=columns)
 
 
-def _require_descent(descent):
-    if not isinstance(descent, Descent):
-        raise TypeError(f"descent must be a Descent; got {descent!r}")
-
-
 def _require_thrust(descent):
     booster = descent.booster
     weight = descent.weight(0.0, booster.dry_mass)
@@ -311,7 +306,7 @@ def _solve(descent, step, fraction, near=None):
         low, high = max(near.t_ignite - 1e-5 * t_end, 0.0), min(near.t_ignite + 1e-5 * t_end, t_end)
         bracket = low, high, missed_by(low), missed_by(high)
     if bracket is None or not bracket[2] >= 0 >= bracket[3]:
-        bracket = _bracket(missed_by, nodes, _deepest(descent.planet))
+        bracket = _bracket(missed_by, nodes, deepest(descent.planet))
     t_ignite = bracketed_root(missed_by, *bracket, xtol=(1e-6 if near is None else 1e-12) * t_end)
     if near is not None and abs(missed_by(t_ignite)) > NEAR_ZERO * descent.height:  # steep, or no root but a jump
         t_ignite = bracketed_root(missed_by, *bracket)
@@ -352,31 +347,24 @@ def _bracket(missed_by, nodes, deepest):
     )
 
 
-def _deepest(planet):
+def deepest(planet):
     """How far the air, or the planet where there is none, can be continued below the ground [m], negative."""
-    return -2 * planet.scale_height if planet.surface_density else -planet.radius / 2
+    with_air, without = -2 * planet.scale_height, -planet.radius / 2
+    if _validate.is_column(planet.surface_density):
+        return np.where(planet.surface_density > 0, with_air, without)
+    return with_air if planet.surface_density else without
 
 
 def _stop(descent, t, h, v, *, dt, step):
     """When and where a full burn from (t, h, v) comes to rest, the ground ignored: (t, h). See `hover_height`."""
-    booster, planet, deepest = descent.booster, descent.planet, _deepest(descent.planet)
-    if v == 0 and descent.acceleration(throttle=1.0)(0.0, h, v) >= 0:
-        return t, h
-    t_empty = t + booster.burn_duration
-    burning = descent.acceleration(throttle=1.0, since=t)
-
-    def dry(t, h, v):
-        return (booster.thrust + descent.drag(h, v)) / booster.dry_mass - planet.gravity(h)
-
+    floor, t_empty = deepest(descent.planet), t + descent.booster.burn_duration
+    burning, dry = descent.acceleration(throttle=1.0, since=t), descent.acceleration_when_dry()
     for f, t_end in ((burning, t_empty), (dry, math.inf)):
-        for t_next in time_grid(t, t_end, dt):
-            while t < t_next:
-                falling = v < 0
-                s, h, v, event = advance(step, f, t, h, v, t_next - t, ground=-math.inf)
-                t = t_next if event is None else min(t + s, t_next)
-                if event == "turn" and falling:
-                    return t, h
-                if h < deepest:
-                    return t, -math.inf
+        start = t, h, v
+        for t, h, v, event in walk(step, f, start, t_end, dt=dt, ground=-math.inf):  # noqa: B007 (v counts below)
+            if event == "stop":
+                return t, h
+            if h < floor:
+                return t, -math.inf
         if v > 0:
             return math.inf, math.inf  # dry and climbing with thrust above weight

@@ -1,10 +1,10 @@
 """Figures that follow the hand: what stays is drawn once, and at each movement of a slider only what moves."""
 
 import html
-import io
 import math
 import zlib
 from decimal import Decimal
+from pathlib import Path
 
 import anywidget
 import matplotlib.pyplot as plt
@@ -12,9 +12,8 @@ import numpy as np
 import traitlets
 from IPython import get_ipython
 from IPython.display import display
-from ipywidgets import FloatLogSlider, FloatRangeSlider, FloatSlider, Image, Layout, VBox
+from ipywidgets import HTML, FloatLogSlider, FloatRangeSlider, FloatSlider, IntSlider, VBox
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from PIL import Image as Pixels
 
 from hoverslam_lib.descent import OUT_OF_PROPELLANT, SOFT_LANDING, SOFT_SPEED, STOPPED_TOO_HIGH, speed_after_fall
 from hoverslam_lib.plotting import Picture, _png
@@ -32,81 +31,40 @@ _ONE_OF_TWO = """<style>
 LOW = 100.0
 """From hovers up to here [m] the fall is told: from much higher, the air would have its say."""
 
+MOST_PIXELS = 8_000_000
+"""Of a picture: beyond that, sharpness costs more time than it is worth."""
+
 _SHOWN = {}  # by cell and run: so that a cell run again takes its former figure out of memory
 
 
-class Message(anywidget.AnyWidget):
-    """The sentence above the picture, which screen readers speak when it changes.
+class Screen(anywidget.AnyWidget):
+    """What a live figure shows: its sentence, which screen readers speak when it changes, and under it the picture.
 
-    It also gives the picture its alternative text and every control the name that its label shows, because ipywidgets
-    gives neither; and it says so when a control was moved and the kernel does not answer. A kernel that is busy is
-    waited for.
+    The browser gets the ground of the picture once, and at each movement only the pixels that differ from it: exact,
+    and so few that the picture is drawn in the very pixels of the screen, however dense. `live.js` puts them on a
+    canvas, tells how much room there is, gives the controls the names and values that ipywidgets does not, and says
+    so when a control was moved and the kernel does not answer.
     """
 
-    _esm = """
-    const WAIT = 1000;
-    function name(el, text) {
-        const figure = el.closest(".hoverslam-live");
-        figure?.querySelector("img.widget-image")?.setAttribute("alt", text);
-        for (const control of figure?.querySelectorAll(".widget-slider, .widget-text") ?? []) {
-            const label = control.querySelector(".widget-label");
-            for (const part of control.querySelectorAll("[role=slider], .widget-readout, input"))
-                part.setAttribute("aria-label", label.innerText || label.title);
-        }
-    }
-    // after a movement without a new sentence the kernel is asked for an answer
-    function watch(model, el, say) {
-        let timer = null;
-        const gone = () => {
-            const kernel = model.widget_manager.kernel;
-            if (kernel?.connectionStatus === "connected" && kernel.status === "busy") {
-                timer = setTimeout(gone, WAIT);
-                return;
-            }
-            timer = null;
-            const cure = document.body.dataset.voila ? "reload this page" : "run this cell again";
-            el.textContent = `The kernel is gone: ${cure}.`;
-        };
-        const ask = () => {
-            timer = setTimeout(gone, WAIT);
-            model.send("are you there?");
-        };
-        const moved = event => {
-            if (timer === null && el.closest(".hoverslam-live")?.contains(event.target)) timer = setTimeout(ask, WAIT);
-        };
-        const answered = () => {
-            clearTimeout(timer);
-            timer = null;
-            say();
-        };
-        model.on("change:text", answered);
-        model.on("msg:custom", answered);
-        const events = ["keydown", "pointerdown", "change"];
-        for (const event of events) document.addEventListener(event, moved, true);
-        return () => {
-            clearTimeout(timer);
-            for (const event of events) document.removeEventListener(event, moved, true);
-        };
-    }
-    export default {
-        render({ model, el }) {
-            el.setAttribute("role", "status");
-            const say = () => {
-                el.textContent = model.get("text");
-                name(el, el.textContent);
-            };
-            say();
-            // the controls come onto the page one by one; by then the sentence may be that the kernel is gone
-            for (const wait of [0, 200, 1000, 3000]) setTimeout(() => name(el, model.get("text")), wait);
-            return watch(model, el, say);
-        },
-    };
-    """
+    _esm = Path(__file__).with_name("live.js")
+    _css = Path(__file__).with_name("live.css")
     text = traitlets.Unicode().tag(sync=True)
+    marks = traitlets.List().tag(sync=True)
+    size = traitlets.List([1, 1]).tag(sync=True)
+    ground = traitlets.Bytes().tag(sync=True)
+    moving = traitlets.Bytes().tag(sync=True)
 
-    def __init__(self):
-        super().__init__()
-        self.on_msg(lambda message, content, buffers: message.send(content))
+    def lay(self, ground):
+        """Take what stays: uint8, shape (height, width, 4)."""
+        self._ground = _whole(ground).copy()
+        height, width = ground.shape[:2]
+        self.size, self.ground = [width, height], _packed(self._ground)
+
+    def put(self, pixels):
+        """Show a picture over that ground."""
+        now = _whole(pixels)
+        at = np.flatnonzero(now != self._ground)
+        self.moving = _packed(np.diff(at, prepend=0).astype("<u4"), now[at])
 
 
 class Live:
@@ -127,28 +85,28 @@ class Live:
     recorded : dict, optional
         What also moves on a page without a kernel, see `recording`: by the name of a control the list of its
         positions, or None for places spread evenly over it. Left out: the first two controls, dt among them.
+    landmarks : dict of str to dict, optional
+        Positions that such a page has a button for, by what the button says: for each control that moves, its value.
     **controls : ipywidgets.Widget
         Any with a value; ``description`` is its label and should have the unit.
     """
 
-    def __init__(self, fig, update, *, recorded=None, **controls):
+    def __init__(self, fig, update, *, recorded=None, landmarks=None, **controls):
         plt.close(fig)
-        self.fig, self.update, self.controls, self.recorded = fig, update, controls, recorded
+        self.fig, self.update, self.controls = fig, update, controls
+        self.recorded, self.landmarks = recorded, landmarks or {}
+        self.text, self.screen = "", Screen()
         self._canvas = FigureCanvasAgg(fig)
-        self._canvas.draw()
-        fig.set_layout_engine("none")
-        self._background = self._canvas.copy_from_bbox(fig.bbox)
+        self._width, self._dpi = round(fig.bbox.width), fig.dpi
         self._moving = sorted(fig.findobj(lambda artist: artist.get_animated()), key=lambda artist: artist.zorder)
-        self.text, self.message = "", Message()
-        self.picture = Image(format="png", layout=Layout(width=f"{fig.bbox.width:.0f}px", max_width="100%"))
         for control in controls.values():
-            control.layout.width = control.layout.width or "34em"
-            control.style.description_width = "11em"
-            control.tooltip = control.tooltip or control.description
+            control.tooltip = control.tooltip or control.description  # else a hand over its label is told "null"
             control.observe(self._follow, "value")
-        self.widget = VBox([*controls.values(), self.message, self.picture])
+        self.widget = VBox([*controls.values(), *_hint(controls.values(), self._width), self.screen])
+        self.widget.layout.max_width = f"{self._width}px"
         self.widget.add_class("hoverslam-live")
-        self._follow()
+        self.screen.on_msg(self._hear)
+        self._draw()
 
     def values(self):
         """The value of every control by its name; a slider's is the decimal number it stands for.
@@ -183,14 +141,50 @@ class Live:
     def show(self):
         """Show the controls and the figure; where they cannot live, a still picture of them shows instead."""
         _close_former_run(self)
-        still = Picture(_png(self.fig), self.text, round(self.fig.bbox.width))._repr_html_()
-        page = f'<div class="hoverslam-still">{still}<p>{html.escape(self.text)} <em>{STILL}</em></p></div>'
-        display({"text/html": _ONE_OF_TWO + page, "text/plain": self.text}, raw=True)
+        said = " ".join(self.text.split())
+        still = Picture(_png(self.fig), said, self._width)._repr_html_()
+        page = f'<div class="hoverslam-still">{still}<p>{html.escape(said)} <em>{STILL}</em></p></div>'
+        display({"text/html": _ONE_OF_TWO + page, "text/plain": said}, raw=True)
         display({_VIEW: self.widget._repr_mimebundle_()[_VIEW]}, raw=True)
 
     def close(self):
         """Take the controls and the picture out of the page and of memory."""
         _close(self.widget)
+
+    def fit(self, width, height, font, ratio):
+        """Draw in the pixels of a browser.
+
+        A figure keeps its shape and its proportions; a page that fills a window has more to arrange.
+
+        Parameters
+        ----------
+        width, height, font : float
+            Of the place that the picture has, and of its letters [CSS px].
+        ratio : float
+            Pixels of the screen per CSS px.
+        """
+        self.fig.set_dpi(self._dpi * width / self._width * ratio)
+
+    def _hear(self, screen, content, buffers):
+        """Answer a browser that asks whether the kernel is there, or tells what room it has."""
+        if "room" not in content:
+            screen.send(content)
+            return
+        room = content["room"]
+        most = math.sqrt(MOST_PIXELS / (room["width"] * room["height"]))
+        before = self.fig.dpi, *self.fig.get_size_inches()
+        self.fit(**room | {"ratio": min(room["ratio"], most)})
+        if (self.fig.dpi, *self.fig.get_size_inches()) != before:
+            self._draw()
+
+    def _draw(self):
+        """Draw what stays, and what moves over it."""
+        self._canvas.draw()
+        self.fig.set_layout_engine("none")
+        self._background = self._canvas.copy_from_bbox(self.fig.bbox)
+        with self.screen.hold_sync():
+            self.screen.lay(np.asarray(self._canvas.buffer_rgba()))
+            self._follow()
 
     def _follow(self, change=None):
         try:
@@ -204,13 +198,15 @@ class Live:
             self.text, moving = said, self._moving
         self._canvas.restore_region(self._background)
         for artist in moving:
-            self.fig.draw_artist(artist)
-        self.picture.value = _encoded(np.asarray(self._canvas.buffer_rgba()))
-        self.say(self.text)
+            if artist.get_visible():
+                self.fig.draw_artist(artist)
+        with self.screen.hold_sync():
+            self.screen.put(np.asarray(self._canvas.buffer_rgba()))
+            self.say(self.text)
 
     def say(self, text):
         """Put a sentence above the picture."""
-        self.message.text = text
+        self.screen.text = text
 
 
 def on_grid(value, slider):
@@ -236,7 +232,7 @@ def on_grid(value, slider):
     return min(place, slider.max, key=lambda place: abs(place - value))
 
 
-def verdict(flight, height):
+def verdict(flight, height, brief=False):
     """Say what became of a flight, led by the signed hover height.
 
     Parameters
@@ -244,6 +240,8 @@ def verdict(flight, height):
     flight : Flight
     height : float
         [m], from `hover_height`; nan if it has none.
+    brief : bool
+        In fewer words, to be read from afar.
 
     Returns
     -------
@@ -252,7 +250,7 @@ def verdict(flight, height):
     if flight.outcome == SOFT_LANDING:
         said = f"{SOFT_LANDING} with {abs(flight.touchdown[1]):.2f} m/s"
         if flight.hover and flight.hover[0] == flight.t[-2]:
-            return f"{said}, engine cut at hover height {flight.hover[1]:+.3f} m"
+            return f"{said}, {'' if brief else 'engine '}cut at hover height {flight.hover[1]:+.3f} m"
         if flight.mass[-1] == flight.descent.booster.dry_mass:
             said += ", tank empty"
         return f"{said}, hover height {height:+.3f} m" if math.isfinite(height) else said
@@ -261,7 +259,8 @@ def verdict(flight, height):
         if h > LOW:
             return f"stopped {_length(h)} too high"
         speed = speed_after_fall(flight.descent.planet, h)
-        return f"stopped {_length(h)} too high, and with the engine cut there, a crash with {speed:.1f} m/s"
+        cut = "; cut there" if brief else ", and with the engine cut there"
+        return f"stopped {_length(h)} too high{cut}, a crash with {speed:.1f} m/s"
     if flight.outcome == OUT_OF_PROPELLANT:
         v = round(flight.v[-1], 1) + 0.0  # no -0.0
         return f"tank empty {_length(flight.h[-1])} above the ground, at {v:.{0 if abs(v) >= 10 else 1}f} m/s"
@@ -285,11 +284,30 @@ def value_of(control):
     return control.value
 
 
-def _encoded(pixels):
-    """A PNG, packed as fast as may be: time counts here, not size."""
-    packed = io.BytesIO()
-    Pixels.fromarray(pixels).convert("RGB").save(packed, format="png", compress_level=1, compress_type=zlib.Z_RLE)
-    return packed.getvalue()
+def _whole(pixels):
+    """Each pixel as one number."""
+    return np.ascontiguousarray(pixels).view("<u4").ravel()
+
+
+def _packed(*arrays):
+    """Packed as fast as may be: time counts here, not size."""
+    return zlib.compress(b"".join(array.tobytes() for array in arrays), 1)
+
+
+def _hint(controls, width):
+    """What arrow keys do, if under some slider of a figure a pixel is more than a step."""
+    sliders = [control for control in controls if isinstance(control, (FloatSlider, IntSlider)) and control.step]
+    fine = [slider for slider in sliders if (slider.max - slider.min) / slider.step > width / 2]
+    if not fine:
+        return []
+    hint = HTML(f"Arrow keys step by {', '.join(map(_single_step, fine))}.")
+    hint.add_class("hoverslam-hint")
+    return [hint]
+
+
+def _single_step(slider):
+    name, _, unit = slider.description.removesuffix("]").partition(" [")
+    return f"{slider.step:g} {unit} ({name})" if unit else f"{slider.step:g} ({name})"
 
 
 def _close(widget):

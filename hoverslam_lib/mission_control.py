@@ -4,10 +4,13 @@ import base64
 import math
 from dataclasses import replace
 from functools import lru_cache
+from pathlib import Path
 
+import anywidget
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
+import traitlets
 from ipywidgets import (
     HTML,
     Button,
@@ -15,17 +18,17 @@ from ipywidgets import (
     Dropdown,
     FloatSlider,
     FloatText,
-    GridBox,
     HBox,
     IntSlider,
     Layout,
     Play,
     SelectionSlider,
-    SelectMultiple,
     ToggleButton,
     VBox,
     jslink,
 )
+from matplotlib.gridspec import GridSpec
+from matplotlib.text import Text
 
 from hoverslam_lib import plotting, published
 from hoverslam_lib.animation import FREE_FALL
@@ -53,7 +56,6 @@ START = {
     "faults": False,
     "moment": 100,
 }
-PAPERS_LANDING = START | {"t_ignite": 35.88, "dt": 0.02, "methods": ("rkn4",), "faults": True}
 
 # what moves in the book: from the fall to the crash, dense where the two landings are, with both equations
 RECORDED = {
@@ -66,6 +68,10 @@ RECORDED = {
     "faults": [False, True],
     "methods": [("rkn4",)],  # the paper's own
 }
+LANDINGS = {  # named as the buttons that lead there
+    "The paper's landing": {"t_ignite": 35.88, "dt": 0.02, "faults": True},
+    "Find the optimum": {"t_ignite": 60.211, "dt": 0.02, "faults": False},
+}
 
 # name of the axis, its limits, and what of a trial is drawn on it
 PANELS = (
@@ -77,6 +83,8 @@ PANELS = (
     ("felt [g]", (-5, 45), lambda trial: trial["felt"] / FREE_FALL),
 )
 OVER_HEIGHT = 2
+SIZE, DPI = (980, 470), 100
+"""Of the figure [CSS px], and in an inch of it, before a browser says what room it has."""
 
 
 @lru_cache(maxsize=16)
@@ -126,7 +134,7 @@ def try_out(descent, t_ignite, dt, method, faults=False):
         "felt": flight.felt_acceleration,
         "end": plotting.hover_end(flight),
         "height": height,
-        "verdict": verdict(flight, height),
+        "verdict": verdict(flight, height, brief=True),
     }
 
 
@@ -150,27 +158,85 @@ def _try_published(descent, t_ignite, dt, method):
     }
 
 
+def stroke(method, length=44, width=3):
+    """A piece of a method's line, to stand before its name, as SVG; length and width [px]."""
+    look = plotting.line(method)
+    named = {"-": (), "--": plt.rcParams["lines.dashed_pattern"]}
+    dashes = named[look["linestyle"]] if look["linestyle"] in named else look["linestyle"][1]
+    pattern = " ".join(f"{width * dash:g}" for dash in dashes)
+    drawn = f'stroke="{look["color"]}" stroke-width="{width}" stroke-dasharray="{pattern}"'
+    return f'<svg width="{length}" height="10" aria-hidden="true"><line x2="{length}" y1="5" y2="5" {drawn}/></svg>'
+
+
+class Methods(anywidget.AnyWidget):
+    """A button for each method, in its colour and line: pressed, it is flown; and together they are the legend."""
+
+    _esm = Path(__file__).with_name("mission_control.js")
+    _css = Path(__file__).with_name("mission_control.css")
+    description = traitlets.Unicode("methods").tag(sync=True)
+    options = tuple((method.title.partition(" (")[0], key) for key, method in METHODS.items())
+    value = traitlets.Tuple().tag(sync=True)
+    looks = traitlets.List([{"key": key, "title": title, "mark": stroke(key, 30, 2.5)} for title, key in options]).tag(
+        sync=True
+    )
+
+    @traitlets.validate("value")
+    def _known(self, proposal):
+        unknown = [key for key in proposal.value if key not in METHODS]
+        if unknown:
+            raise traitlets.TraitError(f"methods are {', '.join(METHODS)}; got {unknown[0]!r}")
+        return tuple(key for key in METHODS if key in proposal.value)
+
+
+class _Panels(Live):
+    """A figure that fills the room it is given."""
+
+    def fit(self, width, height, font, ratio):
+        self.fig.set_size_inches(width / DPI, height / DPI)
+        self.fig.set_dpi(DPI * ratio)
+        columns = 3 if width > 600 else 2
+        grid = _grid(self.fig, len(PANELS) // columns, columns, width / font, height / font)
+        for ax, place in zip(self.fig.axes, grid, strict=True):
+            ax.set_subplotspec(place)
+            ax.tick_params(labelsize=font * 72 / DPI)
+        for text in self.fig.findobj(Text):
+            text.set_fontsize(font * 72 / DPI)
+
+    def say(self, text):
+        verdicts = text.split("\n")[:-1]
+        chosen = self.controls["methods"].value if verdicts else ()
+        with self.screen.hold_sync():
+            self.screen.marks = [stroke(method) for method in chosen]
+            super().say(text)
+
+
+def _grid(fig, rows, columns, width, height):
+    """Places for panels with room for their labels, in a figure of width and height [in the size of its letters]."""
+    left, right, below, above = 5.7, 1.3, 3.4, 0.7
+    wide, high = width / columns - left - right, height / rows - below - above
+    edges = {"left": left / width, "right": 1 - right / width, "bottom": below / height, "top": 1 - above / height}
+    return GridSpec(rows, columns, fig, wspace=(left + right) / wide, hspace=(below + above) / high, **edges)
+
+
 class MissionControl:
     """The controls, the figure that follows them, and the table of the trials that were kept."""
 
     def __init__(self):
         self.trials = []
-        names = {method.title: key for key, method in METHODS.items()}
         controls = {
             "t_ignite": FloatText(step=0.001, description="ignition [s]"),
             "dt": SelectionSlider(options=STEPS, description="step dt [s]"),
             "thrust": FloatSlider(min=0.2, max=15, step=0.1, description="thrust [MN]", readout_format=".1f"),
             "drag": FloatSlider(min=0, max=2, step=0.05, description="drag coefficient"),
             "planet": Dropdown(options=list(PLANETS), description="planet"),
-            "methods": SelectMultiple(options=names.items(), rows=4, description="methods"),
-            "faults": Checkbox(description="the published equation, faults included", indent=True),
+            "methods": Methods(),
+            "faults": Checkbox(description="the published equation, faults included", indent=False),
             "moment": IntSlider(min=0, max=100, description="moment [% of flight]"),
         }
         for name, control in controls.items():
             control.value = START[name]
-            control.layout.width = "100%"
         self.slider = self._slider(controls["t_ignite"])
-        self.live = Live(self._figure(), self._fly, recorded=RECORDED, **controls)
+        self.live = _Panels(self._figure(), self._fly, recorded=RECORDED, landmarks=LANDINGS, **controls)
         self.table, self.play = HTML(), Play(100, min=0, max=100, step=2, interval=120, layout=Layout(display="none"))
         jslink((self.play, "value"), (controls["moment"], "value"))
         self.live.widget = self._layout(controls)
@@ -185,7 +251,7 @@ class MissionControl:
 
     def papers_landing(self, _=None):
         """Set all that the paper's landing was computed with: its equation, its booster, its method and its numbers."""
-        self.live.set(**PAPERS_LANDING)
+        self.live.set(**START | {"methods": ("rkn4",)} | LANDINGS["The paper's landing"])
 
     def find(self, _=None):
         """Set the ignition to the optimum of the descent that is set, to the microsecond."""
@@ -220,9 +286,7 @@ class MissionControl:
     def _slider(self, number):
         """For dragging; the number beside it takes what is typed, as it is typed."""
         slider = FloatSlider(number.value, min=0, max=90, step=0.01, description=number.description, readout=False)
-        slider.tooltip, slider.style.description_width = number.description, "11em"
-        slider.layout = Layout(flex="1 1 auto", width="auto")
-        number.description, number.tooltip, number.layout = "", number.description, Layout(width="7.5em")
+        number.description, number.tooltip = "", number.description
 
         # each follows the other to another place only: browsers send places back, a bit beside
         def apart():
@@ -245,7 +309,7 @@ class MissionControl:
         return Descent(booster, PLANETS[planet])
 
     def _figure(self):
-        fig, axes = plt.subplots(2, 3, figsize=(9.8, 4.7))
+        fig, axes = plt.subplots(2, 3, figsize=[side / DPI for side in SIZE], dpi=DPI)
         self.lines = {name: [] for name in METHODS}
         for n, (ax, (name, limits, _)) in enumerate(zip(axes.flat, PANELS, strict=True)):
             ax.set(ylabel=name, ylim=limits, xlabel="t [s]", xlim=(0, 100))
@@ -268,8 +332,8 @@ class MissionControl:
             trial = try_out(descent, t_ignite, dt, method, faults) if method in methods else None
             _draw(lines, trial, moment / 100)
             if trial:
-                said.append(f"{METHODS[method].title}: {trial['verdict']}")
-        return "; ".join(said) + f". Ignition at {t_ignite:.6f} s, dt = {dt:.3g} s."
+                said.append(f"{METHODS[method].title.partition(' (')[0]}: {trial['verdict']}.")
+        return "\n".join([*said, f"Ignition at {t_ignite:.6f} s, dt = {dt:.3g} s."])
 
     def _layout(self, controls):
         buttons = []
@@ -280,19 +344,24 @@ class MissionControl:
             ("Keep this trial", "add it to the table", self.keep),
             ("Clear the table", "forget all trials", self.clear),
         ):
-            button = Button(description=name, tooltip=what, layout=Layout(width="12em"))
+            button = Button(description=name, tooltip=what)
             button.on_click(act)
             buttons.append(button)
-        ignition = HBox([self.slider, controls["t_ignite"]])
-        left = VBox([ignition, *(controls[name] for name in ("dt", "thrust", "drag"))])
-        play = ToggleButton(description="Play", tooltip="play or pause the flight", layout=Layout(width="6em"))
+        play = ToggleButton(description="Play", tooltip="play or pause the flight")
         jslink((play, "value"), (self.play, "playing"))  # Play's own buttons have no names
-        moment = HBox([controls["moment"], play, self.play])
-        right = VBox([controls["planet"], controls["methods"], controls["faults"], moment])
-        panel = GridBox([left, right], layout=Layout(grid_template_columns="50% 50%", max_width="980px"))
-        page = VBox([panel, HBox(buttons), self.live.message, self.live.picture, self.table])
-        page.add_class("hoverslam-live")
-        return page
+        side = VBox(
+            [
+                *(controls[name] for name in ("thrust", "drag", "planet", "faults", "moment")),
+                HBox([play, *buttons, self.play]),
+            ]
+        )
+        ignition = HBox([self.slider, controls["t_ignite"]])
+        page = VBox([ignition, controls["dt"], controls["methods"], self.live.screen, side])
+        whole = VBox([page, self.table])
+        parts = {"ignition": ignition, "side": side, "window": page, "trials": self.table, "live": whole}
+        for name, part in parts.items():
+            part.add_class(f"hoverslam-{name}")
+        return whole
 
     def _list(self):
         if not self.trials:
@@ -300,16 +369,17 @@ class MissionControl:
             return
         frame = self.to_frame()
         data = base64.b64encode(frame.to_csv(index=False).encode("utf-8")).decode("ascii")
+        table = frame.to_html(index=False, border=0, justify="unset", na_rep="–").replace("<th>", '<th scope="col">')
         link = f'<a download="trials.csv" href="data:text/csv;base64,{data}">Download the table as CSV</a>'
-        self.table.value = f"{frame.to_html(index=False, border=0, na_rep='–')}<p>{link}</p>"
+        self.table.value = f"{table}<p>{link}</p>"
 
 
 def _draw(lines, trial, share):
     """Put one trial on the six panels, with a dot at a share of its time; nothing if there is no trial."""
     for n, (parts, (_, _, value)) in enumerate(zip(lines, PANELS, strict=True)):
+        for part in parts:
+            part.set_visible(trial is not None)
         if trial is None:
-            for part in parts:
-                part.set_data([], [])
             continue
         x, y, end = np.maximum(trial["h"], 1e-3) if n == OVER_HEIGHT else trial["t"], value(trial), trial["end"]
         now = int(np.searchsorted(trial["t"], share * trial["t"][-1]))

@@ -2,10 +2,11 @@
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
-from hoverslam_lib import _validate
+from hoverslam_lib import _columns, _validate
 
 GRAVITATIONAL_CONSTANT = 6.6743e-11
 """G [m³/(kg·s²)], CODATA 2018."""
@@ -15,15 +16,17 @@ GRAVITATIONAL_CONSTANT = 6.6743e-11
 class Planet:
     """A round planet with air whose density falls exponentially.
 
+    Each number may be a column, an array with one number for each row of an ensemble; see `fly_all`.
+
     Parameters
     ----------
-    mass : float
+    mass : float or ndarray, shape (n,)
         [kg], greater than 0.
-    radius : float
+    radius : float or ndarray, shape (n,)
         [m], greater than 0.
-    surface_density : float
+    surface_density : float or ndarray, shape (n,)
         Density of the air at h = 0 [kg/m³]; 0 for a planet without air.
-    scale_height : float
+    scale_height : float or ndarray, shape (n,)
         Height over which the density falls by a factor e [m], greater than 0.
     """
 
@@ -33,10 +36,13 @@ class Planet:
     scale_height: float
 
     def __post_init__(self):
-        _validate.number("mass", self.mass, "kg", above=0)
-        _validate.number("radius", self.radius, "m", above=0)
-        _validate.number("surface_density", self.surface_density, "kg/m³", least=0)
-        _validate.number("scale_height", self.scale_height, "m", above=0)
+        _validate.number_or_column("mass", self.mass, "kg", above=0)
+        _validate.number_or_column("radius", self.radius, "m", above=0)
+        _validate.number_or_column("surface_density", self.surface_density, "kg/m³", least=0)
+        _validate.number_or_column("scale_height", self.scale_height, "m", above=0)
+        _validate.one_length(_columns.columns(self))
+
+    __eq__, __repr__ = _columns.equal, _columns.shown
 
     def gravity(self, h):
         """Gravitational acceleration at height h [m]: positive, m/s² (first term of eq. 1.1)."""
@@ -45,10 +51,16 @@ class Planet:
 
     def air_density(self, h):
         """Density of the air at height h [m]: kg/m³ (`rho_air` of Listings 1 and 4)."""
-        if not self.surface_density:
-            return 0.0 * h
-        exp = np.exp if isinstance(h, np.ndarray) else math.exp
-        return self.surface_density * exp(-h / self.scale_height)
+        x = -h / self._scale_height
+        exp = math.exp if isinstance(x, float) else np.exp
+        return self.surface_density * exp(x)
+
+    @cached_property
+    def _scale_height(self):
+        """That of the air; inf where there is none, so that its density is 0 at any height."""
+        if _validate.is_column(self.surface_density):
+            return np.where(self.surface_density > 0, self.scale_height, math.inf)
+        return self.scale_height if self.surface_density else math.inf
 
 
 EARTH = Planet(mass=5.972167867791379e24, radius=6_378_100.0, surface_density=1.3, scale_height=8_400.0)

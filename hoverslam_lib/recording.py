@@ -2,10 +2,10 @@
 
 import base64
 import io
-import itertools
 import json
 import math
 import re
+from itertools import combinations, product
 
 import numpy as np
 import traitlets
@@ -43,7 +43,7 @@ def positions(live):
     if unknown:
         raise ValueError(f"recorded: there is no control {unknown[0]!r}; there are {', '.join(live.controls)}")
     found = {
-        name: _places(live.controls[name]) if given is None else [_place(live.controls[name], v) for v in given]
+        name: _all_places(live.controls[name]) if given is None else [_place(live.controls[name], v) for v in given]
         for name, given in wanted.items()
     }
     free = sorted((name for name, given in wanted.items() if given is None), key=lambda name: len(found[name]))
@@ -56,8 +56,14 @@ def positions(live):
     return {name: found[name] for name in live.controls if name in found}
 
 
-def frames(live):
+def frames(live, places):
     """Put a live figure through all its positions, the last control fastest; it ends where it was.
+
+    Parameters
+    ----------
+    live : Live
+    places : dict of str to list
+        From `positions`.
 
     Yields
     ------
@@ -65,9 +71,9 @@ def frames(live):
     pixels : ndarray of uint8, shape (height, width, 4)
         As `Live` shows them.
     """
-    places, start = positions(live), {name: control.value for name, control in live.controls.items()}
+    start = {name: control.value for name, control in live.controls.items()}
     try:
-        for values in itertools.product(*places.values()):
+        for values in product(*places.values()):
             live.set(**dict(zip(places, values, strict=True)))
             yield live.text, live.pixels()
     finally:
@@ -82,11 +88,12 @@ def record(live):
     dict
         "width", "height" [px]; "controls", a list of dicts with "name", "unit", "shown" (the positions as text),
         "start" (which of them comes first: that of the figure if it is among them) and "checkbox"; "kept", name and
-        value of each control that does not move there; "ground", a PNG, and "layers", PNGs to lie on it, all as base64;
+        value of each control that does not move there; "landmarks", dicts with "name" and "places", the number of the
+        position of each control; "ground", a PNG, and "layers", PNGs to lie on it, all as base64;
         "sentences", one a layer.
     """
     places, ground = positions(live), live.pixels(moving=False)
-    sentences, layers = zip(*((said, layer(now, ground)) for said, now in frames(live)), strict=True)
+    sentences, layers = zip(*((said, layer(now, ground)) for said, now in frames(live, places)), strict=True)
     still = {name: value_of(control) for name, control in live.controls.items() if len(places.get(name, [0])) == 1}
     still |= {name: places[name][0] for name in places if name in still}
     moving = {name: values for name, values in places.items() if name not in still}
@@ -96,6 +103,7 @@ def record(live):
         "height": height,
         "controls": [_control(live.controls[name], values) for name, values in moving.items()],
         "kept": [_kept(live.controls[name], value) for name, value in still.items()],
+        "landmarks": [_landmark(name, wanted, moving) for name, wanted in live.landmarks.items()],
         "ground": _png(Image.fromarray(ground).convert("RGB").quantize(256, dither=Image.Dither.NONE)),
         "layers": layers,
         "sentences": sentences,
@@ -136,36 +144,47 @@ def _first_two(controls):
 
 
 def _places(control):
-    """All places that a control has of its own."""
+    """All places that a control has of its own, or None: it takes any number."""
     if hasattr(control, "options"):
-        return [option[1] if isinstance(option, tuple) else option for option in control.options]
+        values = [option[1] if isinstance(option, tuple) else option for option in control.options]
+        several = isinstance(control.value, tuple)
+        return [chosen for n in range(len(values) + 1) for chosen in combinations(values, n)] if several else values
     if isinstance(control, Checkbox):
         return [False, True]
-    if isinstance(control, (FloatSlider, FloatLogSlider, IntSlider)) and control.step:
+    if isinstance(control, IntSlider):
+        return list(range(control.min, control.max + 1, control.step))
+    if isinstance(control, (FloatSlider, FloatLogSlider)) and control.step:
         steps = range(int((control.max - control.min) / control.step + 1e-9) + 1)
         places = [on_grid(control.min + n * control.step, control) for n in steps]
         return [control.base**place for place in places] if isinstance(control, FloatLogSlider) else places
-    raise ValueError(f"recorded: name the positions of {control.description!r}, which has no steps of its own")
+    return None
+
+
+def _all_places(control):
+    places = _places(control)
+    if places is None:
+        raise ValueError(f"recorded: name the positions of {control.description!r}, which has no steps of its own")
+    return places
 
 
 def _place(control, value):
-    """The value that a control has once it was put there, if it takes it."""
-    before = control.value
-    try:
-        control.value = value
-        found = value_of(control)
-    except traitlets.TraitError as error:
-        raise ValueError(f"recorded: {control.description!r} cannot be {value!r}: {error}") from None
-    finally:
-        control.value = before
-    if found != value:
-        raise ValueError(f"recorded: {control.description!r} has no place {value!r}; the nearest is {found!r}")
-    return found
+    """The place of a control that is equal to a value; it is not put there, because its figure would follow."""
+    places = _places(control)
+    if places is None:
+        try:
+            return control.traits()["value"].validate(control, value)
+        except traitlets.TraitError as error:
+            raise ValueError(f"recorded: {control.description!r} cannot be {value!r}: {error}") from None
+    if value in places:
+        return places[places.index(value)]
+    numbers = all(isinstance(number, (int, float)) for number in (value, *places))
+    nearest = f"; the nearest is {min(places, key=lambda place: abs(place - value))!r}" if numbers else ""
+    raise ValueError(f"recorded: {control.description!r} has no place {value!r}{nearest}")
 
 
 def _thinned(control, most):
     """At most so many places of a control, spread evenly, with the present one among them."""
-    places, present = _places(control), value_of(control)
+    places, present = _all_places(control), value_of(control)
     if len(places) > most:
         places = [places[round(n)] for n in np.linspace(0, len(places) - 1, max(most, 2))]
     if present not in places:
@@ -183,6 +202,13 @@ def _control(control, places):
         "start": places.index(value_of(control)) if value_of(control) in places else 0,
         "checkbox": isinstance(control, Checkbox),
     }
+
+
+def _landmark(name, wanted, moving):
+    for control, value in (dict.fromkeys(moving) | wanted).items():
+        if value not in moving.get(control, []):
+            raise ValueError(f"landmarks: {name!r} has {control} = {value!r}, which is not recorded")
+    return {"name": name, "places": [places.index(wanted[control]) for control, places in moving.items()]}
 
 
 def _kept(control, value):

@@ -16,9 +16,10 @@ import time
 import nbformat
 import numpy as np
 import pytest
+from scipy.stats import binomtest
 
 from hoverslam_lib import checks, course
-from hoverslam_lib.checks import feedback, judging, pages, record, stopping
+from hoverslam_lib.checks import feedback, judging, lesson_13, pages, record, stopping
 from hoverslam_lib.checks.answers import number as as_number
 from hoverslam_lib.checks.answers import repeatable
 
@@ -256,8 +257,8 @@ def test_hint_and_place_of_every_case_can_be_told(number):
             assert "{" not in what
 
 
-def test_lessons_1_to_12_have_three_exercises_each():
-    expected = [f"{lesson}.{place}" for lesson in range(1, 13) for place in (1, 2, 3)]
+def test_every_lesson_after_the_first_has_three_exercises():
+    expected = [f"{int(path.name[:2])}.{place}" for path in LESSONS[1:] for place in (1, 2, 3)]
     assert ["0.1", *expected] == NUMBERS
 
 
@@ -395,6 +396,28 @@ ENDLESS = [never_ends, never_ends_and_catches, catches_in_two_loops, sleeps_and_
 @pytest.mark.parametrize("function", ENDLESS)
 def test_answer_that_never_ends_is_stopped(function, monkeypatch):
     _is_stopped(function, monkeypatch)
+
+
+@pytest.mark.skipif(not hasattr(stopping.signal, "setitimer"), reason="no timer of signals")
+def test_judge_may_have_a_time_limit_of_its_own(monkeypatch):
+    monkeypatch.setattr(feedback, "TIME_LIMIT", 60.0)
+
+    @check_of
+    def patient(function):
+        yield function(1.0)
+        yield
+
+    patient.judge.seconds = 0.3
+    start = time.perf_counter()
+    assert "was stopped after 0 s" in repr(patient(never_ends))
+    assert time.perf_counter() - start < 3
+
+
+def test_interval_of_a_count_is_that_of_scipy():
+    for successes, n in ((0, 30), (1, 1), (49, 50), (189, 200)):
+        interval = binomtest(successes, n).proportion_ci(method="wilson")
+        assert lesson_13.wilson(successes, n) == pytest.approx(interval, abs=1e-12)
+    assert lesson_13.ASKED == 189
 
 
 @pytest.mark.parametrize("function", ENDLESS[:3])

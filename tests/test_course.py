@@ -23,6 +23,10 @@ fig, ax = plt.subplots()
 ax.plot([0, 1], [0, 1], **plotting.line("rk4"))
 plotting.show(fig, alt="a line to 1")
 """
+FILM = """
+from hoverslam_lib.animation import Animation
+Animation(b"GIF", "a film of 1 s", (0.0,), (40,), 480)
+"""
 
 
 @pytest.fixture
@@ -38,6 +42,7 @@ def folder(tmp_path, monkeypatch):
     for name in ("01_first", "02_second"):
         cells = [nbformat.v4.new_markdown_cell("# 1"), nbformat.v4.new_code_cell("print('a')\nprint('b')")]
         cells.append(nbformat.v4.new_code_cell(FIGURE, metadata={"collapsed": True, "tags": ["kept"]}))
+        cells.append(nbformat.v4.new_code_cell(FILM))
         metadata = {"language_info": {"name": "python", "version": "3.2.1"}}
         nbformat.write(nbformat.v4.new_notebook(cells=cells, metadata=metadata), notebooks / f"{name}.ipynb")
     monkeypatch.setattr(course, "NOTEBOOKS", notebooks)
@@ -50,11 +55,12 @@ def test_refresh_executes_cleans_and_changes_nothing_the_second_time(folder, cap
     assert course.refresh(path) == []
     once = path.read_bytes()
     stored = nbformat.reads(once.decode(), as_version=4)
-    assert [cell.execution_count for cell in stored.cells[1:]] == [1, 2]
+    assert [cell.execution_count for cell in stored.cells[1:]] == [1, 2, 3]
     assert stored.cells[1].outputs[0].text == "a\nb\n"
     assert stored.cells[2].metadata == {"tags": ["kept"]}
     assert b"3.2.1" not in once
     assert 'alt="a line to 1"' in stored.cells[2].outputs[0].data["text/html"]
+    assert 'src="data:image/gif;base64,R0lG">' in stored.cells[3].outputs[0].data["text/html"]
     assert course.refresh(path) == []
     assert path.read_bytes() == once
     assert capfd.readouterr() == ("", ""), "neither the kernel nor who starts it has anything to say"

@@ -13,6 +13,7 @@ TABLES = {
     "constants": (13, ["symbol", "name", "value", "unit", "source"]),
     "listing_3": (8, ["method", "quantity", "value", "unit"]),
     "optimisation_tables": (84, ["figure", "dt", "t_ignite", "method", "quantity", "value", "unit"]),
+    "real_landings": (168, ["flight", "t [s]", "speed [m/s]", "height [m]"]),
     "text_values": (9, ["section", "method", "quantity", "value", "unit"]),
 }
 
@@ -158,3 +159,43 @@ def test_the_layers_are_contiguous_and_temperature_is_continuous():
     assert top.iloc[-1] == 84_852
     assert base[1:].tolist() == top[:-1].tolist()
     assert (temperature + lapse * (top - base))[:-1].tolist() == pytest.approx(temperature[1:].tolist(), abs=1e-9)
+
+
+# ---- three real landings ----------------------------------------------------------------------------------------
+
+FLIGHTS = dict(list(data.load("real_landings").groupby("flight")))
+
+
+def test_each_landing_has_every_second_from_before_the_burn_to_the_ground():
+    assert set(FLIGHTS) == {"NROL-76", "CRS-11", "OTV-5"}
+    for flight in FLIGHTS.values():
+        assert flight["t [s]"].tolist() == list(range(-20, 36))
+        assert flight[["speed [m/s]", "height [m]"]].ge(0).all(axis=None)
+
+
+@pytest.mark.parametrize("name", FLIGHTS)
+def test_a_booster_only_slows_down_and_sinks_and_ends_at_rest(name):
+    flight = FLIGHTS[name].set_index("t [s]")
+    assert flight["speed [m/s]"].diff()[1:].le(0).all()
+    assert flight["height [m]"].diff()[1:].le(0).all()
+    assert flight["speed [m/s]"].iloc[-1] <= 1
+    assert flight["height [m]"].iloc[-1] <= 100
+
+
+@pytest.mark.parametrize("name", FLIGHTS)
+def test_speeds_fit_the_heights_in_metres_and_seconds(name):
+    """In feet, km/h or another time they would not: a booster sinks no faster than it moves, and not much slower."""
+    flight = FLIGHTS[name].set_index("t [s]")
+    sunk = flight["height [m]"][-16] - flight["height [m]"][0]
+    assert 0.85 < sunk / flight["speed [m/s]"].loc[-15:0].sum() < 1.0
+    assert flight["speed [m/s]"][0] == pytest.approx(318, abs=2)  # at the start of the burn
+    assert flight["speed [m/s]"][20] == pytest.approx(105, abs=5)
+
+
+def test_columns_of_the_landings_sum_to_what_was_collected():
+    sums = data.load("real_landings").groupby("flight")[["speed [m/s]", "height [m]"]].sum()
+    assert sums.T.to_dict("list") == {
+        "CRS-11": [14_638, 222_900],
+        "NROL-76": [13_904, 217_500],
+        "OTV-5": [13_491, 222_200],
+    }

@@ -8,7 +8,7 @@ import pytest
 import hoverslam_lib
 
 FOLDER = Path(hoverslam_lib.__file__).parent
-PRIVATE = ["_validate", "_roots", "_dop853"]
+PRIVATE = ["_validate", "_columns", "_roots", "_dop853"]
 ORDER = [
     *PRIVATE,
     "metrics",
@@ -29,6 +29,7 @@ ORDER = [
     "mission_control",
     "checks",
     "book",
+    "collect",
     "course",
 ]
 MODULES = {path.stem: path for path in FOLDER.glob("*.py") if path.stem != "__init__"}

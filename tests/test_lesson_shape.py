@@ -9,11 +9,7 @@ import pytest
 from hoverslam_lib import course
 
 LESSONS = [path for path in course.lessons() if re.match(r"\d", path.name)]
-NOT_YET = {12}
-"""Lessons that still wait to be put into this shape."""
-
-SHAPED = [path for path in LESSONS if int(path.name[:2]) not in NOT_YET]
-each_lesson = pytest.mark.parametrize("path", SHAPED, ids=lambda path: path.stem)
+each_lesson = pytest.mark.parametrize("path", LESSONS, ids=lambda path: path.stem)
 TIME = r"\*\*Time\*\* (\d+) minutes(?:, (\d+) more for the exercises)?(?:, and (\d+) for the optional end)?\."
 
 

@@ -15,6 +15,7 @@ import nbformat
 import numpy as np
 import pytest
 from ipywidgets import (
+    HTML,
     Checkbox,
     Dropdown,
     FloatLogSlider,
@@ -23,28 +24,29 @@ from ipywidgets import (
     FloatText,
     IntSlider,
     SelectionSlider,
-    SelectMultiple,
 )
 from PIL import Image
 from scipy.optimize import brentq
+from screen import shown as screen_shows
 from test_guide import settings
 
 from hoverslam_lib import FALCON_9, Descent, FreeFall, course, fly, live, published, recording
 from hoverslam_lib.live import Live, on_grid, verdict
+from hoverslam_lib.mission_control import Methods
 
 POSITIONS = int(os.environ.get("LIVE_POSITIONS", "100"))
 NOTEBOOKS = [path for path in course.lessons() if "Live(" in path.read_text() or "MissionControl" in path.read_text()]
 
 
-def pixels(png):
-    return np.asarray(Image.open(io.BytesIO(png)).convert("RGB"), dtype=int)
+def pixels(screen):
+    return screen_shows(screen).astype(int)
 
 
 def drawn_anew(fig):
     """The figure as matplotlib draws it in one go, everything that moves included."""
     png = io.BytesIO()
     fig.savefig(png, format="png", dpi=fig.dpi)
-    return pixels(png.getvalue())
+    return np.asarray(Image.open(png).convert("RGB"), dtype=int)
 
 
 @pytest.fixture
@@ -77,23 +79,23 @@ def dot():
 def test_picture_is_what_matplotlib_draws(dot):
     for x in (5.0, 2.3, 0.0, 9.9):
         dot.controls["x"].value = x
-        got, whole = pixels(dot.picture.value), drawn_anew(dot.fig)
+        got, whole = pixels(dot.screen), drawn_anew(dot.fig)
         assert got.shape == whole.shape
         # over a spine the order of drawing shows, in a few pixels
         assert np.mean(np.any(np.abs(got - whole) > 8, axis=2)) < 1e-3
         assert dot.text == f"the dot is at {x:.1f}, 5.0"
-        assert dot.message.text == dot.text
+        assert dot.screen.text == dot.text
 
 
 def test_error_stands_in_place_and_the_control_stays_usable(dot):
     dot.controls["x"].value = 3.0
-    before = dot.picture.value
+    before = pixels(dot.screen)
     dot.controls["x"].value = -2.0
     assert dot.text == "Not possible: x must be at least -1 m <really>"
-    assert dot.message.text == dot.text
-    assert np.all(np.ptp(pixels(dot.picture.value)[50:250, 100:600], axis=2) < 8), "nothing that moves is drawn"
+    assert dot.screen.text == dot.text
+    assert np.all(np.ptp(pixels(dot.screen)[50:250, 100:600], axis=2) < 8), "nothing that moves is drawn"
     dot.controls["x"].value = 3.0
-    assert dot.picture.value == before
+    assert np.array_equal(pixels(dot.screen), before)
 
 
 @pytest.mark.parametrize("error", [KeyError("x"), ZeroDivisionError(), RuntimeError(""), TypeError("no")])
@@ -112,14 +114,14 @@ def test_whatever_an_update_raises_is_shown(error):
 def test_update_without_a_sentence_is_told_so():
     fig, _ = plt.subplots()
     made = Live(fig, lambda x: None, x=FloatSlider(1.0))
-    assert made.message.text == made.text
+    assert made.screen.text == made.text
     assert "must return a sentence" in made.text
     made.close()
 
 
 def test_set_draws_once(dot, monkeypatch):
     pictures = []
-    dot.picture.observe(lambda change: pictures.append(change), "value")
+    dot.screen.observe(pictures.append, "moving")
     dot.set(x=1.0, y=2.0)
     assert len(pictures) == 1
     assert dot.text == "the dot is at 1.0, 2.0"
@@ -213,15 +215,66 @@ def test_paper_lands_where_a_browser_sends_its_ignition_time_back():
 
 def test_kernel_answers_when_it_is_asked_whether_it_is_there(dot, monkeypatch):
     sent = []
-    monkeypatch.setattr(dot.message, "send", sent.append)
-    dot.message._handle_custom_msg("are you there?", [])
+    monkeypatch.setattr(dot.screen, "send", sent.append)
+    dot.screen._handle_custom_msg("are you there?", [])
     assert len(sent) == 1
 
 
-def test_controls_have_labels_that_are_not_cut(dot):
-    for control in dot.controls.values():
-        assert control.tooltip == control.description
-        assert control.style.description_width == "11em"
+def in_a_browser(made, width, height, ratio):
+    """Say how much room there is, as a browser does."""
+    room = {"width": width, "height": height, "font": 14, "ratio": ratio}
+    made.screen._handle_custom_msg({"room": room}, [])
+
+
+def test_picture_is_drawn_in_the_pixels_of_the_screen(dot):
+    (height, width), text = pixels(dot.screen).shape[:2], dot.text
+    grounds = []
+    dot.screen.observe(grounds.append, "ground")
+    in_a_browser(dot, width, height, 1)
+    assert grounds == [], "nothing to draw anew"
+    for shown_width, ratio in ((width, 2), (width / 2, 3), (width, 1.25)):
+        in_a_browser(dot, shown_width, height * shown_width / width, ratio)
+        for x in (5.0, 2.3):
+            dot.controls["x"].value = x
+            got, whole = pixels(dot.screen), drawn_anew(dot.fig)
+            assert got.shape == whole.shape
+            assert got.shape[1] == round(shown_width * ratio)
+            assert np.mean(np.any(np.abs(got - whole) > 8, axis=2)) < 1e-3
+    assert len(grounds) == 3
+    dot.controls["x"].value = 5.0
+    assert dot.text == text
+    in_a_browser(dot, width, height, 1)
+    assert np.all(np.abs(pixels(dot.screen) - drawn_anew(dot.fig)) < 8)
+
+
+def test_no_picture_is_larger_than_time_allows(dot):
+    in_a_browser(dot, 3000, 2250, 2)
+    height, width = pixels(dot.screen).shape[:2]
+    assert 0.98 < height * width / live.MOST_PIXELS < 1.02
+
+
+def test_still_is_as_wide_as_the_figure_however_dense_the_screen(dot, shown):
+    width = pixels(dot.screen).shape[1]
+    in_a_browser(dot, width, 300, 2)
+    dot.show()
+    assert f'width="{width}"' in shown[0]["text/html"]
+
+
+def test_arrow_keys_are_told_of_where_a_pixel_is_many_steps():
+    fig, _ = plt.subplots()
+    sliders = {
+        "a": FloatSlider(1, min=0, max=40, step=0.01, description="ignition, our ledger [s]"),
+        "b": FloatSlider(1, min=0, max=2, step=0.01, description="dt [s]"),
+        "c": FloatLogSlider(0.1, min=-2, max=0, step=0.001, description="z"),
+        "d": IntSlider(1, min=0, max=5000, description="n"),
+    }
+    made = Live(fig, lambda **values: "text 1", **sliders)
+    (hint,) = (child.value for child in made.widget.children if isinstance(child, HTML))
+    assert hint == "Arrow keys step by 0.01 s (ignition, our ledger), 1 (n)."
+    made.close()
+    made = Live(plt.figure(), lambda b: "text 1", b=FloatSlider(1, min=0, max=2, step=0.01, description="dt [s]"))
+    assert not any(isinstance(child, HTML) for child in made.widget.children)
+    made.close()
 
 
 def test_live_figure_leaves_no_open_figure_and_close_frees_its_widgets():
@@ -245,13 +298,15 @@ def live_widgets():
 def test_verdict_leads_with_the_hover_height():
     fall = FreeFall(Descent(), dt=0.1)
 
-    def said(t):
-        return verdict(fall.fly(t), fall.hover_height(t))
+    def said(t, **how):
+        return verdict(fall.fly(t), fall.hover_height(t), **how)
 
     assert said(60.2) == "stopped 12.7 m too high, and with the engine cut there, a crash with 15.8 m/s"
     assert said(60.211) == "soft landing with 0.90 m/s, engine cut at hover height +0.041 m"
     assert said(60.21104).startswith("soft landing with 1.")
     assert "cut" not in said(60.21104)
+    assert said(60.2, brief=True) == "stopped 12.7 m too high; cut there, a crash with 15.8 m/s"
+    assert said(60.211, brief=True) == "soft landing with 0.90 m/s, cut at hover height +0.041 m"
     assert "hover height +0.00" in said(60.211035)
     assert said(60.3).startswith("hover height −102 m, 188.4 m/s too fast")
     assert said(20.0) == "stopped 91.52 km too high"
@@ -314,7 +369,7 @@ def range_of(control):
         return [control.min, control.max], lambda rng: int(rng.integers(control.min, control.max + 1))
     if isinstance(control, Checkbox):
         return [False, True], lambda rng: bool(rng.integers(2))
-    if isinstance(control, SelectMultiple):
+    if isinstance(control, Methods):
         keys = [value for _, value in control.options]
         return [(), tuple(keys)], lambda rng: tuple(k for k in keys if rng.integers(len(keys)) < 2)
     assert isinstance(control, SelectionSlider | Dropdown), control
@@ -374,7 +429,7 @@ def test_every_corner_and_many_positions(lesson):
             made.set(**values)
             check(made)
             if n % 40 == 0:
-                got, whole = pixels(made.picture.value), drawn_anew(made.fig)
+                got, whole = pixels(made.screen), drawn_anew(made.fig)
                 differ = np.mean(np.any(np.abs(got - whole) > 8, axis=2))
                 assert differ < 0.01 or made.text.startswith("Not possible"), (values, differ)
 
@@ -384,11 +439,11 @@ def test_same_position_gives_the_same_picture_and_text_again(lesson):
         seen = []
         for values in positions(made, 6, seed=2):
             made.set(**values)
-            seen.append((values, made.text, made.picture.value))
+            seen.append((values, made.text, made.screen.moving))
         for values, text, picture in reversed(seen):
             made.set(**values)
             assert made.text == text
-            assert made.picture.value == picture
+            assert made.screen.moving == picture
 
 
 def test_neither_memory_nor_figures_grow(lesson):

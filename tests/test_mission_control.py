@@ -8,9 +8,13 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 import pytest
+import traitlets
+from matplotlib.text import Text
+from screen import shown
 
 from hoverslam_lib import EARTH, Descent, best_ignition, fly, hover_height, plotting, published
-from hoverslam_lib.mission_control import START, STEPS, MissionControl, try_out
+from hoverslam_lib.integrators import METHODS
+from hoverslam_lib.mission_control import START, STEPS, MissionControl, stroke, try_out
 
 
 @pytest.fixture(scope="module")
@@ -79,7 +83,7 @@ def test_ignition_is_dragged_on_the_sliders_grid_and_typed_as_it_is(page):
 
 def test_dragging_draws_once_a_movement(page):
     pictures = []
-    page.live.picture.observe(lambda change: pictures.append(change), "value")
+    page.live.screen.observe(pictures.append, "moving")
     page.slider.value = 58.33
     page.live.controls["t_ignite"].value = 57.123456
     assert len(pictures) == 2
@@ -88,7 +92,7 @@ def test_dragging_draws_once_a_movement(page):
 def test_no_soft_landing_is_explained_and_changes_nothing(page):
     page.live.set(thrust=0.2)
     page.find()
-    assert "No soft landing: thrust must exceed" in page.live.message.text
+    assert "No soft landing: thrust must exceed" in page.live.screen.text
     assert page.live.controls["t_ignite"].value == START["t_ignite"]
 
 
@@ -155,4 +159,62 @@ def test_moment_puts_the_dots_on_the_flight(page):
     assert t == pytest.approx(trial["t"][-1] / 2, abs=0.02)
     assert h == pytest.approx(np.interp(t, trial["t"], trial["h"]) / 1e3)
     assert len(before.get_xdata()) == trial["end"]
-    assert len(page.lines["dop8"][0][0].get_xdata()) == 0, "a method that is not chosen is not drawn"
+    assert not page.lines["dop8"][0][0].get_visible(), "a method that is not chosen is not drawn"
+    assert before.get_visible()
+
+
+def in_a_browser(page, width, height, font, ratio=1):
+    """Say how much room there is, as a browser does."""
+    room = {"width": width, "height": height, "font": font, "ratio": ratio}
+    page.live.screen._handle_custom_msg({"room": room}, [])
+
+
+@pytest.mark.parametrize(
+    ("width", "height", "font", "columns"),
+    [(960, 290, 14, 3), (960, 520, 14, 3), (1512, 670, 18, 3), (360, 504, 14, 2)],
+)
+def test_panels_fill_the_room_with_letters_of_the_pages_size_and_nothing_cut(page, width, height, font, columns):
+    in_a_browser(page, width, height, font)
+    fig = page.live.fig
+    assert page.live.screen.size == [width, height]
+    sizes = {text.get_fontsize() * fig.dpi / 72 for text in fig.findobj(Text)}
+    assert min(sizes) == pytest.approx(font) == max(sizes)
+    assert len({round(ax.get_position().x0, 6) for ax in fig.axes}) == columns
+    boxes = [ax.get_tightbbox() for ax in fig.axes]
+    for n, box in enumerate(boxes):
+        assert box.x0 >= 0
+        assert box.y0 >= 0
+        assert box.x1 <= width
+        assert box.y1 <= height + 1
+        assert not any(box.overlaps(other) for other in boxes[:n])
+    in_a_browser(page, width, height, font, ratio=2)
+    assert page.live.screen.size == [2 * width, 2 * height]
+    sharp = shown(page.live.screen)[::2, ::2].astype(int)
+    in_a_browser(page, width, height, font)
+    assert np.mean(np.abs(sharp - shown(page.live.screen)) > 64) < 0.1
+
+
+def test_methods_are_chosen_in_their_order_and_drawn_as_everywhere(page):
+    methods = page.live.controls["methods"]
+    page.live.set(methods=("dop8", "explicit_euler"))
+    assert methods.value == ("explicit_euler", "dop8")
+    for look in methods.looks:
+        assert f'stroke="{plotting.line(look["key"])["color"]}"' in look["mark"]
+    dashes = [re.search('dasharray="(.*?)"', stroke(key, width=2)).group(1) for key in METHODS]
+    assert dashes[:4] == ["7.4 3.2", "12 3 3 3", "2.4 2", ""]
+    assert len(set(dashes)) == 7
+    with pytest.raises(traitlets.TraitError, match="got 'rk5'"):
+        methods.value = ("rk5",)
+
+
+def test_each_verdict_is_one_line_marked_by_its_method_and_a_refusal_has_none(page):
+    page.live.set(methods=("rk4", "explicit_euler"), dt=0.1)
+    screen = page.live.screen
+    lines = screen.text.splitlines()
+    assert [line.partition(":")[0] for line in lines[:-1]] == ["Explicit Euler", "Runge–Kutta 4"]
+    assert screen.marks == [stroke("explicit_euler"), stroke("rk4")]
+    assert lines[-1] == "Ignition at 60.200000 s, dt = 0.1 s."
+    assert max(map(len, lines)) < 80
+    page.live.set(methods=())
+    assert screen.text == "Not possible: choose at least one method"
+    assert screen.marks == []

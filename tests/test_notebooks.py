@@ -4,13 +4,11 @@ import re
 
 import nbformat
 import pytest
-from test_lesson_shape import NOT_YET
 
 from hoverslam_lib import course
 
 NOTEBOOKS = course.lessons()
 LESSONS = [path for path in NOTEBOOKS if path.name[0].isdigit()]
-WITH_LONG_CELLS = [path for path in LESSONS if int(path.name[:2]) in NOT_YET]
 PAGES = [*NOTEBOOKS, *sorted(course.NOTEBOOKS.glob("*.md")), course.NOTEBOOKS.parent / "README.md"]
 
 
@@ -37,8 +35,7 @@ def code(source, count=2, **output):
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_notebook_is_stored_in_order(path):
-    long_cells = r"cell \[\d+\] has \d+ lines; 15 are allowed" if path in WITH_LONG_CELLS else "never"
-    assert [problem for problem in course.problems(path) if not re.fullmatch(long_cells, problem)] == []
+    assert course.problems(path) == []
 
 
 @pytest.mark.parametrize("path", LESSONS, ids=lambda path: path.stem)
@@ -69,14 +66,6 @@ def test_no_line_of_a_formula_or_sentence_is_taken_for_a_list(path):
 def test_every_link_to_a_file_leads_somewhere(path):
     links = re.findall(r"\]\((?!https?:|#)([^)#]+)[^)]*\)", prose(path))
     assert [link for link in links if not (path.parent / link).exists()] == []
-
-
-def test_readme_lists_every_lesson_with_its_time():
-    readme = prose(course.NOTEBOOKS.parent / "README.md")
-    for path in WITH_LONG_CELLS:
-        minutes, more = re.search(r"\*\*Time\*\* (\d+) minutes(?:, and (\d+) more)?", prose(path)).groups()
-        time = f"{minutes} min (+{more})" if more else f"{minutes} min"
-        assert re.search(rf"\(notebooks/{path.name}\).*\| {re.escape(time)} \|", readme), path.name
 
 
 BROKEN = {

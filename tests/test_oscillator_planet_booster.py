@@ -188,7 +188,7 @@ def build(cls, **changed):
 
 @pytest.mark.parametrize(("cls", "field", "unit", "limit"), FIELDS)
 @pytest.mark.parametrize(
-    "value", [math.nan, math.inf, -math.inf, "1", None, True, 1j, [1.0], np.array([1.0, 2.0]), -1.0, 0.0], ids=repr
+    "value", [math.nan, math.inf, -math.inf, "1", None, True, 1j, [1.0], np.array([[1.0, 2.0]]), -1.0, 0.0], ids=repr
 )
 def test_a_bad_value_is_refused_with_name_value_unit_and_what_is_allowed(cls, field, unit, limit, value):
     if repr(value) in {"above 0": [], "from 0": ["0.0"], None: ["0.0", "-1.0"]}[limit]:

@@ -127,7 +127,7 @@ def show(*what, raw=False):
             print(each._repr_html_() if hasattr(each, "_repr_html_") else repr(each))
 
 IPython.display.display = live.display = show
-live.Live.show = lambda self, show=live.Live.show: (show(self), print(base64.b64encode(self.picture.value)))
+live.Live.show = lambda self, show=live.Live.show: (show(self), print(base64.b64encode(self.pixels())))
 namespace = {"display": show, "__name__": "__main__"}
 for cell in nbformat.read(sys.argv[1], as_version=4).cells:
     if cell.cell_type == "code":

@@ -1,8 +1,9 @@
 import math
 
+import numpy as np
 import pytest
 
-from hoverslam_lib._roots import bracketed_root
+from hoverslam_lib._roots import bracketed_root, bracketed_roots
 
 
 def counted(g):
@@ -97,3 +98,32 @@ def test_it_is_far_better_than_bisection():
 def test_the_same_sign_at_both_ends_is_an_error(ga, gb):
     with pytest.raises(ValueError, match=r"same sign at both ends: g\(2\) = .*, g\(3\) = "):
         bracketed_root(lambda x: x, 2.0, 3.0, ga, gb)
+
+
+def test_many_roots_at_once_are_those_found_one_by_one():
+    cases = ORDINARY + HARD + [(lambda x: x - 0.5, 0.5, 1.0, 0.5), (lambda x: x - 0.5, 0.0, 0.5, 0.5)]
+    gs, a, b, roots = zip(*cases, strict=True)
+
+    def g(x):
+        return np.array([one(float(each)) for one, each in zip(gs, x, strict=True)])
+
+    a, b = np.array(a), np.array(b)
+    found = bracketed_roots(g, a, b, g(a), g(b), xtol=1e-15)
+    one_by_one = [find(*case[:3], xtol=1e-15)[0] for case in cases]
+    assert found.tolist() == pytest.approx(one_by_one, rel=0, abs=4e-15)
+    assert found.tolist() == pytest.approx(list(roots), rel=1e-14, abs=4e-15)
+
+
+def test_a_root_does_not_depend_on_those_found_beside_it():
+    targets = np.linspace(0.01, 0.99, 50)
+
+    def roots_of(targets):
+        def g(x):
+            return x**3 - targets
+
+        zero, one = np.zeros_like(targets), np.ones_like(targets)
+        return bracketed_roots(g, zero, one, g(zero), g(one))
+
+    together = roots_of(targets)
+    assert [roots_of(targets[i : i + 1])[0] for i in range(50)] == together.tolist()
+    assert roots_of(np.array([])).size == 0

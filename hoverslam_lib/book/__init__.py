@@ -4,6 +4,7 @@ Text and pictures are the stored outputs, which the tests compare; only the cell
 executed, to record it. Sphinx, MyST-NB and sphinx-book-theme make the pages (``pip install -e '.[book]'``).
 """
 
+import base64
 import contextlib
 import hashlib
 import io
@@ -21,8 +22,9 @@ from multiprocessing import get_context
 from pathlib import Path
 
 import nbformat
+from PIL import Image
 
-from hoverslam_lib import recording
+from hoverslam_lib import checks, recording
 
 HERE = Path(__file__).parent
 PROJECT = HERE.parent.parent
@@ -35,7 +37,14 @@ SMALLEST = 0.72
 PARTS = {"The methods": "0[0-5]", "The booster": "0[6-9]|1[01]", "Beyond the paper": "1[2-9]"}
 
 
-def build(paths, folder, *, for_students=False, unfold=False):
+WITHOUT_PYTHON = """*Without Python:* write your guess down where it says **Predict**, then unfold the answer below it;
+move the figures; do the exercises on paper, with the hints that are folded under them."""
+
+GOES_ON = r"\n\n(?=##|\*\*(?:Predict|Further reading|Next)\b)"
+"""Where a text that takes a prediction up ends, and the lesson goes on."""
+
+
+def build(paths, folder, *, for_students=False, unfold=False, withhold_solutions=False):
     """Make the book.
 
     Parameters
@@ -48,6 +57,8 @@ def build(paths, folder, *, for_students=False, unfold=False):
         Leave out the instructor's guide.
     unfold : bool, optional
         Show the answers to the predictions at once, instead of when asked for.
+    withhold_solutions : bool, optional
+        Leave out the solutions of the exercises.
 
     Raises
     ------
@@ -63,12 +74,16 @@ def build(paths, folder, *, for_students=False, unfold=False):
     with tempfile.TemporaryDirectory() as scratch:
         source, made = Path(scratch, "source"), Path(scratch, "made")
         source.mkdir()
-        _write_source(source, paths, names, for_students, unfold)
+        _write_source(source, paths, names, for_students)
+        for path in paths:
+            _write_lesson(source / path.name, path, names, unfold, withhold_solutions)
         # apart from this process, because Sphinx and its themes warn Python of what they will change
         command = [sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", "-c", HERE, source, made]
         told = subprocess.run([*map(str, command)], capture_output=True, text=True, check=False)
         if told.returncode:
             raise ValueError(f"Sphinx cannot make the book:\n{told.stderr.strip()}")
+        for page in made.glob("*.html"):
+            _put_stills(page)
         (made / "recordings").mkdir()
         for name, kept in names.items():
             shutil.copyfile(kept, made / "recordings" / f"{name}.js")
@@ -165,24 +180,29 @@ def _record(path):
 # ---- pages
 
 
-def _write_source(source, paths, names, for_students, unfold):
-    """The notebooks as Sphinx is to see them, beside the pages of Markdown."""
+def _write_source(source, paths, names, for_students):
+    """What is no lesson, as Sphinx is to see it."""
     notebooks = paths[0].parent
-    for path in paths:
-        notebook = nbformat.read(path, as_version=4)
-        live = iter(name for name in names if name.rpartition("-")[0] == path.stem)
-        for cell in notebook.cells:
-            _put_recordings(cell, live)
-            if not unfold and "answer" in cell.metadata.get("tags", []):
-                _fold(cell)
-        if path.stem == "mission_control":
-            notebook.metadata["html_theme.sidebar_secondary.remove"] = True
-        nbformat.write(notebook, source / path.name)
     for name in ("glossary.md", *([] if for_students else ["instructor_guide.md"])):
         shutil.copyfile(notebooks / name, source / name)
     shutil.copytree(notebooks / "images", source / "images")
     (source / "prediction_sheet.md").write_text(prediction_sheet(paths), encoding="utf-8")
     (source / "index.md").write_text(_index(paths, for_students), encoding="utf-8")
+
+
+def _write_lesson(target, path, names, unfold, withhold_solutions):
+    """A notebook as Sphinx is to see it."""
+    notebook = nbformat.read(path, as_version=4)
+    live = iter(name for name in names if name.rpartition("-")[0] == path.stem)
+    for cell in notebook.cells:
+        _put_recordings(cell, live)
+    if path.stem == "mission_control":
+        notebook.metadata["html_theme.sidebar_secondary.remove"] = True
+    else:
+        cells = notebook.cells if unfold else _folded(notebook.cells)
+        title, *others = _with_help(cells, withhold_solutions)
+        notebook.cells = [title, nbformat.v4.new_markdown_cell(WITHOUT_PYTHON), *others]
+    nbformat.write(notebook, target)
 
 
 def _put_recordings(cell, live):
@@ -209,11 +229,66 @@ def _scrolling(match):
     return f'<img {attributes}width="{width}" style="min-width:{SMALLEST * width:.0f}px"'
 
 
-def _fold(cell):
-    if cell.cell_type == "code":
-        cell.metadata["tags"] = [*cell.metadata["tags"], "hide-output"]
-    else:
-        cell.source = f"<details><summary>Show the answer</summary>\n\n{cell.source}\n\n</details>"
+def _folded(cells):
+    """Cells with folded away what answers a prediction: the outputs from there on, and the text that takes them up."""
+    answering = False
+    for cell in cells:
+        answer = "answer" in cell.metadata.get("tags", [])
+        answering = answering or answer
+        if answering and cell.cell_type == "code":
+            if cell.outputs:
+                cell.metadata["tags"] = [*cell.metadata.get("tags", []), "hide-output"]
+        elif answering:
+            yield from _folded_text(cell, "Show the answer" if answer else "Show what to make of it")
+            answering = answer
+            continue
+        yield cell
+
+
+def _folded_text(cell, summary):
+    taken_up, *rest = re.split(GOES_ON, f"\n\n{cell.source}", maxsplit=1)
+    if taken_up:
+        yield nbformat.v4.new_markdown_cell(_details(summary, taken_up))
+    if rest:
+        yield nbformat.v4.new_markdown_cell(rest[0])
+
+
+def _details(summary, text):
+    return f"<details><summary>{summary}</summary>\n\n{text.strip()}\n\n</details>"
+
+
+def _with_help(cells, withhold_solutions):
+    """Cells with hints and solution folded under each exercise."""
+    exercises = {exercise.name: exercise for exercise in checks.EXERCISES.values()}
+    for cell in cells:
+        yield cell
+        called = re.findall(r"\bchecks\.(\w+)\(", cell.source) if cell.cell_type == "code" else []
+        for exercise in (exercises[name] for name in called if name in exercises):
+            folded = [_details("Hints", "\n".join(f"- {hint}" for hint in exercise.hints))]
+            if not withhold_solutions:
+                folded.append(_details("Solution", f"```python\n{exercise.solution.strip()}\n```"))
+            yield nbformat.v4.new_markdown_cell("\n\n".join(folded))
+
+
+def _put_stills(page):
+    """Put beside each film of a page its last picture, hidden until the film is stopped."""
+
+    def beside(film):
+        source = re.search(r'src="(.*?)(?:#\d+)?"', film[0])[1]
+        data = (
+            base64.b64decode(source.partition(",")[2])
+            if source.startswith("data:")
+            else (page.parent / source).read_bytes()
+        )
+        with Image.open(io.BytesIO(data)) as frames:
+            frames.seek(frames.n_frames - 1)
+            last = io.BytesIO()
+            frames.convert("RGB").quantize(256, dither=Image.Dither.NONE).save(last, "png", optimize=True)
+        picture = f"data:image/png;base64,{base64.b64encode(last.getvalue()).decode('ascii')}"
+        return film[0] + film[0].replace(source, picture).replace("<img ", '<img class="still" hidden ', 1)
+
+    text = page.read_text(encoding="utf-8")
+    page.write_text(re.sub(r'<img [^>]*src="(?:data:image/gif|[^"]*\.gif")[^>]*>', beside, text), encoding="utf-8")
 
 
 def prediction_sheet(paths):

@@ -22,7 +22,12 @@ mathjax_path = "tex-svg.js"
 mathjax3_config = {"options": {"enableMenu": False}}
 
 html_theme = "sphinx_book_theme"
-html_theme_options = {"home_page_in_toc": True, "show_toc_level": 2, "use_download_button": False}
+html_theme_options = {
+    "home_page_in_toc": True,
+    "show_toc_level": 2,
+    "use_download_button": False,
+    "navbar_persistent": [],  # the sidebar has the field for searching
+}
 html_context = {"default_mode": "auto"}
 html_static_path = [str(HERE / "static"), str(Path(_mathjax, "static", "mathjax", mathjax_path))]
 html_css_files = ["book.css"]

@@ -102,9 +102,10 @@ def judged(judge, answers):
     """How many tests are passed, and a `Wrong` or None, whatever the answers do; only *Interrupt* gets through.
 
     ``judge(*answers)`` yields None for each test that is passed, and raises `Wrong` at the first that is not. It may
-    yield a `Wrong` before: what to say if a search for something better takes too long, or fails.
+    yield a `Wrong` before: what to say if a search for something better takes too long, or fails. A judge that flies
+    much has more ``seconds`` than `TIME_LIMIT`.
     """
-    passed, wrong = 0, None
+    passed, wrong, seconds = 0, None, getattr(judge, "seconds", TIME_LIMIT)
 
     def work():
         nonlocal passed, wrong
@@ -113,20 +114,20 @@ def judged(judge, answers):
 
     try:
         with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
-            limited(work, TIME_LIMIT)
+            limited(work, seconds)
     except Wrong as better:
         wrong = better
     except KeyboardInterrupt:
         raise
     except BaseException as error:
-        wrong = wrong or Wrong(raised(error))
+        wrong = wrong or Wrong(raised(error, seconds))
     return passed, wrong
 
 
-def raised(error):
+def raised(error, seconds=TIME_LIMIT):
     """What a student's function raised, and in which line of its cell."""
     if isinstance(error, TimeIsUp):
-        return f"Your answer was stopped after {TIME_LIMIT:.0f} s: does a loop never end?"
+        return f"Your answer was stopped after {seconds:.0f} s: does a loop never end?"
     if isinstance(error, RecursionError):
         return "Your answer calls itself again and again, without an end."
     frames = traceback.extract_tb(error.__traceback__)

@@ -22,9 +22,9 @@ FLAGS = [
 ]
 JUPYTER = ["--allow-root", "--ServerApp.root_dir=."]
 TOKEN = "a-token-for-the-tests"
+# no notices over the page, and nothing saved but on command; all else is as users have it
 SETTINGS = {
     "@jupyterlab/apputils-extension:notification": {"fetchNews": "false", "checkForUpdates": False},
-    "@jupyterlab/notebook-extension:tracker": {"windowingMode": "none"},
     "@jupyterlab/docmanager-extension:plugin": {"autosave": False},
 }
 IDLE = """() => {
@@ -53,6 +53,15 @@ OUTPUTS = """() => {
 }"""
 
 
+class Address(str):
+    """Of a server, with the number of its process."""
+
+    def __new__(cls, text, process):
+        made = super().__new__(cls, text)
+        made.process = process
+        return made
+
+
 class NoBrowser(Exception):
     """There is no Chromium to drive."""
 
@@ -77,7 +86,7 @@ def browser():
 def server(application, folder, config):
     """JupyterLab ("lab"), Notebook 7 ("notebook") or Voilà ("voila") on a folder of notebooks; yields its address.
 
-    Each has a configuration of its own.
+    Each has a configuration of its own; Voilà reads the folder's as well.
     """
     config = Path(config)
     (config / "labconfig").mkdir(parents=True, exist_ok=True)
@@ -102,15 +111,27 @@ def server(application, folder, config):
             with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", port), 1):
                 break
             time.sleep(0.25)
-        yield f"http://127.0.0.1:{port}"
+        yield Address(f"http://127.0.0.1:{port}", running.pid)
     finally:
         running.terminate()
         running.wait(30)
 
 
+def open_voila(page, address, name):
+    """Open a notebook as a page without code, and wait for its controls."""
+    page.goto(f"{address}/voila/render/{name}?token={TOKEN}", timeout=90_000)
+    page.wait_for_selector(".noUi-handle", timeout=60_000)
+
+
+def open_alone(page, address, name):
+    """Open a notebook in Notebook 7, and wait for its kernel."""
+    page.goto(f"{address}/notebooks/{name}?token={TOKEN}", timeout=90_000)
+    page.wait_for_function(IDLE, timeout=60_000)
+
+
 def open_lab(page, address):
     """Load JupyterLab, with nothing open."""
-    page.goto(f"{address}/lab?token={TOKEN}&reset")
+    page.goto(f"{address}/lab?token={TOKEN}&reset", timeout=90_000)
     page.wait_for_function("() => window.jupyterapp?.commands.hasCommand('docmanager:open')", timeout=60_000)
     page.evaluate("async () => { await window.jupyterapp.restored; }")
     page.evaluate("() => window.jupyterapp.commands.execute('application:toggle-left-area')")

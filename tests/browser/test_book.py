@@ -1,17 +1,20 @@
 """The book, opened from its folder in a headless Chromium without a network."""
 
+import base64
+import io
 import json
 import re
 import shutil
 
 import nbformat
+import numpy as np
 import pytest
+from PIL import Image
 
-from hoverslam_lib import book, course
+from hoverslam_lib import book, checks, course
 
 pytest.importorskip("playwright.sync_api", reason="playwright is missing: pip install -e '.[dev]'")
 pytest.importorskip("sphinx", reason="sphinx is missing: pip install -e '.[book]'")
-import driver
 from axe_playwright_python.sync_playwright import Axe
 
 WIDTHS = (390, 1280)
@@ -32,15 +35,6 @@ SEEN_THROUGH = """layer => {
     return style.backgroundColor === "rgba(0, 0, 0, 0)" && style.filter === "none" && style.opacity === "1";
 }"""
 SHOWN = "figure => figure.querySelector('.picture img:last-child').src"
-
-
-@pytest.fixture(scope="module")
-def chromium():
-    try:
-        with driver.browser() as browser:
-            yield browser
-    except driver.NoBrowser as missing:
-        pytest.skip(str(missing))
 
 
 @pytest.fixture(scope="module")
@@ -146,13 +140,14 @@ def test_every_figure_follows_keys_and_finger_to_what_was_recorded(page, made, r
             box = field.bounding_box()
             tap(box["x"] + 0.7 * box["width"], box["y"] + box["height"] / 2)
             places[k] = int(field.input_value())
-            assert 0.6 < places[k] / (len(control["shown"]) - 1) < 0.8 or len(control["shown"]) < 6
+            last = len(control["shown"]) - 1
+            assert abs(places[k] / last - 0.7) < max(0.1, 0.6 / last), "not the place under the finger"
             check_position(figure, record, places)
         assert figure.locator(".room").bounding_box()["height"] == room  # the picture has not moved
         ground, layer = figure.locator(".picture img").evaluate_all(RECTANGLES)
         assert ground == layer
         assert figure.locator(".picture img").last.evaluate(SEEN_THROUGH)
-        assert ground[2] >= min(record["width"], 0.72 * record["width"]) - 1
+        assert ground[2] >= book.SMALLEST * record["width"] - 1
         assert ground[2] / ground[3] == pytest.approx(record["width"] / record["height"], rel=0.01)
     assert page.said == []
 
@@ -168,26 +163,262 @@ def test_first_sentence_is_that_of_the_stored_still(recordings):
             assert record["sentences"][first] in [output.data["text/plain"] for output in cells[cell].outputs]
 
 
-def test_answers_are_folded_until_asked_for_and_open_when_printed(page, made):
+ANSWER = """cells => cells.flatMap(answer => {
+    const shown = [answer];
+    for (let next = answer.nextElementSibling; next; next = next.nextElementSibling) {
+        if (next.matches("section") || /^(Predict|Further reading|Next)/.test(next.innerText)) break;
+        shown.push(next);
+        if (!next.matches(".cell")) break;
+    }
+    return shown;
+}).flatMap(part => part.matches(".cell") ? [...part.querySelectorAll(".cell_output")] : [part])
+    .filter(part => part.checkVisibility() && !part.matches("details:not([open])"))
+    .map(part => part.innerText)"""
+
+
+def test_answers_are_folded_until_asked_for_with_the_text_that_takes_them_up(page, made):
     for path in course.lessons():
-        tagged = [cell for cell in nbformat.read(path, as_version=4).cells if "answer" in cell.metadata.get("tags", [])]
+        cells = nbformat.read(path, as_version=4).cells
+        tagged = [cell.cell_type for cell in cells if "answer" in cell.metadata.get("tags", [])]
         page.goto((made / f"{path.stem}.html").as_uri())
-        assert page.locator("article details:not([open])").count() == len(tagged)
-        if tagged:
-            page.locator("article details summary").first.click()
-            assert page.locator("article details[open]").count() == 1
-    page.evaluate("dispatchEvent(new Event('beforeprint'))")
-    assert page.locator("article details:not([open])").count() == 0
+        answers = page.locator("article .cell.tag_answer")
+        assert answers.count() == tagged.count("code")
+        assert page.get_by_text("Show the answer", exact=True).count() == tagged.count("markdown")
+        assert answers.evaluate_all(ANSWER) == [], path.name
+    page.goto((made / "03_symplectic_euler.html").as_uri())
+    away = page.get_by_text("explicit Euler has spiralled far out")
+    assert not away.is_visible()
+    assert page.get_by_role("heading", name="Area", exact=True).is_visible()
+    away.locator("xpath=ancestor::details").locator("summary").click()
+    assert away.is_visible()
+    assert page.locator("article details[open]").count() == 1
 
 
-def test_no_line_is_cut_in_print(chromium, made):
-    page = chromium.new_page(viewport={"width": 718, "height": 1000})  # A4 within its margins
-    page.emulate_media(media="print")
+@pytest.fixture(params=["light", "dark"])
+def paper(chromium, request):
+    """A page as it is printed: A4 within its margins."""
+    context = chromium.new_context(viewport={"width": 718, "height": 1000}, color_scheme=request.param, offline=True)
+    yield context.new_page()
+    context.close()
+
+
+FAINT = """() => {
+    const light = colour => {
+        const [red, green, blue] = colour.match(/[0-9.]+/g).map(Number);
+        return 0.3 * red + 0.59 * green + 0.11 * blue;
+    };
+    const parts = [...document.querySelectorAll("article :is(p, li, h1, h2, pre, td, th, a, summary)")];
+    const style = part => getComputedStyle(part);
+    const ground = [document.documentElement, document.body, document.querySelector(".bd-main")].map(style);
+    return [
+        ...parts.filter(e => e.checkVisibility() && light(style(e).color) > 140).map(e => e.outerHTML.slice(0, 80)),
+        ...ground.map(e => e.backgroundColor).filter(c => !/rgba\\(.*, 0\\)/.test(c) && light(c) < 250),
+    ];
+}"""
+UNSEEN = """() => [...document.querySelectorAll("article details *")].filter(part => {
+    const style = getComputedStyle(part);
+    return Number(style.opacity) < 1 || part.getAnimations().length;
+}).map(part => part.outerHTML.slice(0, 80))"""
+
+
+def test_no_line_is_cut_in_print_and_all_is_dark_on_white(paper, made):
     for path in sorted(made.glob("*.html")):
-        page.goto(path.as_uri())
-        page.evaluate("dispatchEvent(new Event('beforeprint'))")
-        page.wait_for_timeout(200)
-        assert page.evaluate(CUT) == [], path.name
+        paper.goto(path.as_uri())
+        theme = paper.evaluate("document.documentElement.dataset.theme")
+        paper.emulate_media(media="print")
+        paper.evaluate("dispatchEvent(new Event('beforeprint'))")
+        # at once: nobody waits for what fades in
+        assert paper.locator("article details:not([open])").count() == 0
+        assert paper.evaluate(UNSEEN) == [], path.name
+        paper.wait_for_timeout(200)
+        assert paper.evaluate(CUT) == [], path.name
+        assert paper.evaluate(FAINT) == [], path.name
+        paper.evaluate("dispatchEvent(new Event('afterprint'))")
+        assert paper.evaluate("document.documentElement.dataset.theme") == theme
+        paper.emulate_media(media="screen")
+
+
+def test_a_film_is_printed_as_the_picture_on_which_it_stands_still(paper, made):
+    paper.goto((made / "10_animations.html").as_uri())
+    paper.emulate_media(media="print")
+    paper.evaluate("dispatchEvent(new Event('beforeprint'))")
+    assert [still.is_visible() for still in paper.locator("img.still").all()] == [True] * 3
+    assert not paper.locator("img[src^='data:image/gif']").first.is_visible()
+
+
+def phone(page):
+    if page.viewport_size["width"] != 390:
+        pytest.skip("that is for phones")
+
+
+def test_menu_and_contents_open_on_a_phone_and_close_when_an_entry_is_chosen(page, made):
+    phone(page)
+    page.goto((made / "03_symplectic_euler.html").as_uri())
+    page.locator("button.secondary-toggle:visible").tap()
+    page.locator("dialog[open]").get_by_role("link", name="The phase plane").tap()
+    page.locator("dialog[open]").wait_for(state="detached", timeout=3000)
+    there = (
+        "id => { const {top} = document.getElementById(id).getBoundingClientRect(); return top >= -1 && top < 200; }"
+    )
+    page.wait_for_function(there, arg="the-phase-plane", timeout=5000)  # the page glides
+    page.locator("button.primary-toggle:visible").tap()
+    page.locator("dialog[open]").get_by_role("link", name="4 · A step that has to be solved").tap()
+    page.wait_for_url("**/04_implicit_euler.html")
+
+
+def test_no_tooltip_stays_on_a_phone(page, made):
+    phone(page)
+    page.goto((made / "03_symplectic_euler.html").as_uri())
+    page.locator("button.search-button__button:visible").first.tap()
+    page.locator(".tooltip").wait_for(state="attached", timeout=3000)
+    page.wait_for_timeout(500)
+    assert not page.locator(".tooltip").is_visible()
+
+
+def swipe(page, start, by):
+    """A finger that comes down, moves in twelve steps, and leaves."""
+    session = page.context.new_cdp_session(page)
+    for n in range(13):
+        point = {"x": start[0] + by[0] * n / 12, "y": start[1] + by[1] * n / 12}
+        kind = "touchMove" if n else "touchStart"
+        session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": [point]})
+        page.wait_for_timeout(16)
+    session.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+    page.wait_for_timeout(300)
+
+
+def test_a_thumb_that_scrolls_past_a_slider_leaves_it_and_one_that_drags_moves_it(page, made, recordings):
+    phone(page)
+    record = recordings["03_symplectic_euler-0"]
+    figure = figure_of(page, made, "03_symplectic_euler-0")
+    page.evaluate("document.documentElement.style.scrollBehavior = 'auto'")
+    field = figure.locator("input[type=range]").first
+    field.evaluate("field => field.scrollIntoView({block: 'center'})")
+    places, box = [control["start"] for control in record["controls"]], field.bounding_box()
+    before = page.evaluate("scrollY")
+    at = box["x"] + 0.85 * box["width"], box["y"] + box["height"] / 2
+    swipe(page, at, (0, -200))
+    assert page.evaluate("scrollY") > before + 100
+    check_position(figure, record, places)
+    field.evaluate("field => field.scrollIntoView({block: 'center'})")
+    box = field.bounding_box()
+    swipe(page, (box["x"] + 0.2 * box["width"], box["y"] + box["height"] / 2), (0.6 * box["width"], 0))
+    places[0] = int(field.input_value())
+    assert 0.7 < places[0] / (len(record["controls"][0]["shown"]) - 1) < 0.9
+    check_position(figure, record, places)
+
+
+def test_buttons_move_a_slider_by_one_place_and_stop_at_its_ends(page, made, recordings):
+    record = recordings["09_ignition_tables-0"]
+    figure = figure_of(page, made, "09_ignition_tables-0")
+    touch = page.viewport_size["width"] == 390
+    places = [control["start"] for control in record["controls"]]
+    for k, control in enumerate(record["controls"]):
+        down, up = (
+            figure.get_by_role("button", name=f"{control['name']}: one place {where}", exact=True)
+            for where in ("down", "up")
+        )
+        for button in (down, up):
+            box = button.bounding_box()
+            assert min(box["width"], box["height"]) >= (44 if touch else 24)
+        last = len(control["shown"]) - 1
+        for place in (*range(places[k] + 1, last + 1), *range(last - 1, -1, -1)):
+            (button,) = (up,) if place > places[k] else (down,)
+            (button.tap if touch else button.click)()
+            places[k] = place
+            check_position(figure, record, places)
+            assert (down.is_disabled(), up.is_disabled()) == (place == 0, place == last)
+    start = [control["start"] for control in record["controls"]]
+    name = record["controls"][0]["name"]
+    figure_of(page, made, "09_ignition_tables-0")
+    figure.get_by_role("button", name=f"{name}: one place down", exact=True).click()
+    assert record["controls"][0]["shown"][start[0] - 1] == "35.878"
+    assert "largest velocity -67.0 m/s" in figure.locator("[role=status]").inner_text()
+
+
+def test_mission_control_has_a_button_for_each_landing_and_fills_a_wall(page, made, recordings):
+    record = recordings["mission_control-0"]
+    figure = figure_of(page, made, "mission_control-0")
+    for name, said, value in (
+        ("The paper's landing", "comes to 0 m/s 2.6 m above the ground. Ignition at 35.880000 s, dt = 0.02 s", "on"),
+        ("Find the optimum", "soft landing", "off"),
+    ):
+        button = figure.get_by_role("button", name=name)
+        button.click()
+        assert said in figure.locator("[role=status]").inner_text()
+        assert value in figure.locator("output").all_inner_texts()
+        check_position(figure, record, next(mark["places"] for mark in record["landmarks"] if mark["name"] == name))
+        assert name in page.locator("article").inner_text()
+    page.set_viewport_size({"width": 1920, "height": 1080})
+    assert figure.locator(".picture").bounding_box()["width"] > 1300
+    assert figure.bounding_box()["height"] < 1080 - 60  # below the page's own bar
+    assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+
+
+def test_a_picture_wider_than_the_page_says_so(page, made, recordings):
+    for name, record in recordings.items():
+        figure = figure_of(page, made, name)
+        wider = figure.locator(".scroll").evaluate("part => part.scrollWidth > part.clientWidth")
+        assert figure.get_by_text("swipe it for the rest").is_visible() == wider
+        assert wider == (page.viewport_size["width"] == 390 and book.SMALLEST * record["width"] > 360)
+
+
+def test_what_a_control_changes_comes_into_view_on_a_phone(page, made):
+    phone(page)
+    figure = figure_of(page, made, "09_ignition_tables-0")
+    page.evaluate("scrollTo({top: 0, behavior: 'instant'})")
+    scroll = figure.locator(".scroll")
+    ends = {"ignition, ledger": "part => part.scrollLeft > 100", "ignition as printed": "part => part.scrollLeft < 60"}
+    for name, shows in ends.items():  # its panel stands at the right, and at the left
+        figure.get_by_role("button", name=f"{name}: one place up", exact=True).tap()
+        page.wait_for_function(shows, arg=scroll.element_handle(), timeout=5000)
+
+
+NEAREST = 2.0
+"""A film that was begun anew shows no later moment [s] when its first picture is taken."""
+
+
+def test_films_are_stopped_at_their_last_picture_and_played_again_from_the_first(chromium, made):
+    page = chromium.new_page(color_scheme="light")  # a dark page dims its pictures
+    page.goto((made / "10_animations.html").as_uri())
+    films = page.locator("img[src^='data:image/gif']")
+    assert films.count() == 3
+    film, still = films.first, page.locator("img.still").first
+    with Image.open(packed(film)) as frames:
+        times, pictures, t = [], [], 0
+        for n in range(frames.n_frames):
+            frames.seek(n)
+            times.append(t)
+            pictures.append(np.array(frames.convert("RGB"), dtype=int))
+            t += frames.info["duration"] / 1000
+    with Image.open(packed(still)) as last:
+        assert np.array_equal(np.array(last.convert("RGB")), pictures[-1])
+    assert still.get_attribute("alt") == film.get_attribute("alt")
+    assert re.search(r"\d", still.get_attribute("alt"))
+
+    small = [picture[::2, ::2].astype(np.int16) for picture in pictures]
+
+    def moment():
+        """What the film shows [s]."""
+        seen = Image.open(io.BytesIO(film.screenshot())).convert("RGB").resize(pictures[0].shape[1::-1])
+        seen = np.array(seen, dtype=np.int16)[::2, ::2]
+        return times[int(np.argmin([np.abs(picture - seen).mean() for picture in small]))]
+
+    film.scroll_into_view_if_needed()
+    shown = [moment()]
+    while len(shown) < 20 and shown[-2:] != [times[-1]] * 2:
+        page.wait_for_timeout(4000)  # longer than it rests before it begins anew
+        shown.append(moment())
+    assert shown[-2:] == [times[-1]] * 2  # it has played its three times
+    page.get_by_role("button", name="Play again", exact=True).first.click()
+    assert moment() < NEAREST
+    page.get_by_role("button", name="Stop", exact=True).first.click()
+    assert still.is_visible()
+    assert not film.is_visible()
+    page.get_by_role("button", name="Play again", exact=True).first.click()
+    assert film.is_visible()
+    assert not still.is_visible()
+    assert moment() < NEAREST
     page.close()
 
 
@@ -204,30 +435,37 @@ def test_prediction_sheet_prints_a_lesson_a_page(chromium, made):
     page.close()
 
 
-def test_menu_and_contents_open_on_a_phone(page, made):
-    page.goto((made / "03_symplectic_euler.html").as_uri())
-    if page.viewport_size["width"] != 390:
-        pytest.skip("they stand beside the text there")
-    for kind, entry in (("primary", "4 · A step that has to be solved"), ("secondary", "The phase plane")):
-        page.locator(f"button.{kind}-toggle:visible").click()
-        link = page.locator("dialog[open]").get_by_role("link", name=entry)
-        link.wait_for(state="visible", timeout=3000)
-        page.keyboard.press("Escape")
+def packed(image):
+    return io.BytesIO(base64.b64decode(image.get_attribute("src").partition(",")[2].partition("#")[0]))
 
 
-def test_films_can_be_paused_and_played_again(page, made):
-    page.goto((made / "10_animations.html").as_uri())
-    films = page.locator("img[src^='data:image/gif']")
-    assert films.count() >= 3
-    buttons = page.locator("button.pause")
-    buttons.first.click()
-    assert not films.first.is_visible()
-    still = page.locator("canvas[role=img]").first
-    assert still.is_visible()
-    assert re.search(r"\d", still.get_attribute("aria-label"))
-    assert buttons.first.inner_text() == "Play again"
-    buttons.first.click()
-    assert films.first.is_visible()
+def test_films_stand_still_for_who_wants_less_motion(chromium, made):
+    page = chromium.new_page(reduced_motion="reduce")
+    for name in ("index", "00_start_here", "10_animations"):
+        page.goto((made / f"{name}.html").as_uri())
+        assert page.locator("img.still").count() >= 1
+        assert all(still.is_visible() for still in page.locator("img.still").all())
+        assert not any(film.is_visible() for film in page.locator("img:has(+ .still)").all())
+    page.close()
+
+
+def test_exercises_have_hints_and_solution_folded_under_them(page, made):
+    for path in course.lessons():
+        page.goto((made / f"{path.stem}.html").as_uri())
+        number = re.match(r"0?(\d+)_", path.name)
+        own = [e for e in checks.EXERCISES.values() if number and e.number.startswith(f"{number[1]}.")]
+        for summary in ("Hints", "Solution"):
+            folded = page.locator("article details", has=page.get_by_text(summary, exact=True))
+            assert folded.count() == len(own)
+            assert not any(part.get_attribute("open") for part in folded.all())
+        assert page.get_by_text("Without Python:").count() == (number is not None)
+    page.goto((made / "02_explicit_euler.html").as_uri())
+    hint = page.get_by_text("Which operation repeats a multiplication", exact=False)
+    assert not hint.is_visible()
+    page.get_by_text("Hints", exact=True).first.click()
+    assert hint.is_visible()
+    page.get_by_text("Solution", exact=True).first.click()
+    assert page.locator("details[open] pre", has_text="def my_energy_factor").is_visible()
 
 
 @pytest.mark.parametrize("name", ["01_oscillator_and_error-0", "mission_control-0"])
@@ -237,16 +475,144 @@ def test_axe_finds_nothing_of_ours(page, made, name):
     assert found <= OTHERS
 
 
-def test_for_students_and_unfolded(made, tmp_path):
-    paths = course.lessons()
-    book.build(paths, tmp_path / "book", for_students=True, unfold=True)
-    pages = {path.name for path in (tmp_path / "book").glob("*.html")}
-    assert {"index.html", "00_start_here.html", "glossary.html"} <= pages
-    assert "mission_control.html" in pages
+def test_for_students_unfolded_and_with_solutions_withheld(made, tmp_path):
+    target = tmp_path / "book"
+    assert course.main(["book", str(target), "--for-students", "--open", "--withhold-solutions"]) == 0
+    pages = {path.name: path.read_text("utf-8") for path in target.glob("*.html")}
+    assert {"index.html", "00_start_here.html", "glossary.html", "mission_control.html"} <= pages.keys()
     assert "instructor_guide.html" not in pages
-    assert "<details" not in (tmp_path / "book" / "00_start_here.html").read_text("utf-8")
-    book.build(paths, tmp_path / "book")  # in its place
-    assert (tmp_path / "book" / "instructor_guide.html").exists()
-    shutil.rmtree(tmp_path / "book" / "_static")
+    assert not any("Show the answer" in text or "what to make of it" in text for text in pages.values())
+    assert not any("<summary>Solution" in text for text in pages.values())
+    assert pages["02_explicit_euler.html"].count("<summary>Hints") == 3
+    book.build(course.lessons(), target)  # in its place
+    assert (target / "instructor_guide.html").exists()
+    shutil.rmtree(target / "_static")
     with pytest.raises(ValueError, match="holds other files and no book"):
-        book.build(paths, tmp_path / "book")
+        book.build(course.lessons(), target)
+
+
+# ---- looks
+
+WALL = {"width": 1920, "height": 1080}
+OFF_ITS_VALUES = """() => {
+    const right = cell => {
+        const text = document.createRange();
+        text.selectNodeContents(cell);
+        return cell.textContent.trim() ? text.getBoundingClientRect().right : null;
+    };
+    const found = [];
+    for (const table of document.querySelectorAll("table.dataframe")) {
+        const heading = table.tHead.rows[0].cells;
+        if ([...heading].some(cell => cell.colSpan > 1)) continue;
+        for (const row of table.tBodies[0].rows)
+            for (const [k, cell] of [...row.cells].reverse().entries()) { // labels may span rows
+                const over = heading[heading.length - 1 - k];
+                const [above, below] = [right(over), right(cell)];
+                if (cell.tagName === "TD" && above && below && Math.abs(above - below) > 1)
+                    found.push(`${over.textContent}: ${cell.textContent} ends ${below - above} px beside it`);
+            }
+    }
+    return found;
+}"""
+PALE = """() => {
+    const light = part => { part /= 255; return part <= 0.04045 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4; };
+    const found = new Set();
+    for (const e of document.querySelectorAll("article :is(p, li, td, th, a, code, pre, pre span, summary, h1, h2)")) {
+        if (!e.checkVisibility() || !e.textContent.trim()) continue;
+        const [r, g, b] = getComputedStyle(e).color.match(/[\\d.]+/g).map(Number);
+        const contrast = 1.05 / (0.2126 * light(r) + 0.7152 * light(g) + 0.0722 * light(b) + 0.05);
+        if (contrast < 4.5) found.add(`${e.tagName}.${e.className} ${r} ${g} ${b}`);
+    }
+    return [...found];
+}"""
+UNDERLINED = "links => links.map(e => getComputedStyle(e).textDecorationLine === 'underline')"
+STYLES = """selector => [...document.querySelectorAll(selector)].map(e => {
+    const {backgroundColor, filter, padding} = getComputedStyle(e);
+    return {ground: backgroundColor, filter, padding};
+})"""
+HIDDEN_SIDES = """() => [...document.querySelectorAll(".output, .cell_input pre, .hoverslam-recorded .scroll")]
+    .filter(e => e.checkVisibility())
+    .map(e => ({scrolls: e.scrollWidth > e.clientWidth, faded: getComputedStyle(e).getPropertyValue("--right")}))"""
+
+
+@pytest.fixture
+def dark(chromium):
+    context = chromium.new_context(viewport=WALL, color_scheme="dark", offline=True)
+    yield context.new_page()
+    context.close()
+
+
+def book_pages(made):
+    return [path for path in sorted(made.glob("*.html")) if path.stem not in ("search", "genindex")]
+
+
+def test_pages_fit_phone_tablet_and_wall_with_one_field_for_searching(chromium, made):
+    page = chromium.new_page()
+    for path in book_pages(made):
+        assert "Author name not set" not in path.read_text("utf-8")
+        page.goto(path.as_uri())
+        for width in (390, 1024, 1920):
+            page.set_viewport_size({"width": width, "height": 900})
+            assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), (path.name, width)
+            assert page.locator(".search-button__button:visible, input[type=search]:visible").count() == 1
+    page.close()
+
+
+def test_headings_stand_over_their_values(page, made):
+    for path in book_pages(made):
+        page.goto(path.as_uri())
+        page.evaluate("document.querySelectorAll('details').forEach(part => part.open = true)")
+        assert page.evaluate(OFF_ITS_VALUES) == [], path.name
+
+
+def test_no_code_is_hidden_at_the_side_of_a_wall_and_what_scrolls_on_a_phone_fades(chromium, made):
+    page = chromium.new_page(viewport=WALL)
+    for path in book_pages(made):
+        page.goto(path.as_uri())
+        page.evaluate("document.querySelectorAll('details').forEach(part => part.open = true)")
+        page.set_viewport_size(WALL)
+        assert not any(part["scrolls"] for part in page.evaluate(HIDDEN_SIDES)), path.name
+        page.set_viewport_size({"width": 390, "height": 844})
+        page.wait_for_timeout(100)
+        for part in page.evaluate(HIDDEN_SIDES):
+            assert (part["faded"] != "0px") == part["scrolls"], path.name
+    page.goto((made / "01_oscillator_and_error.html").as_uri())
+    code = page.locator(".cell_input pre").first
+    assert code.evaluate("e => getComputedStyle(e).getPropertyValue('--right')") != "0px"
+    code.evaluate("e => { e.scrollLeft = e.scrollWidth; }")
+    page.wait_for_timeout(100)
+    assert code.evaluate("e => getComputedStyle(e).getPropertyValue('--right')") == "0px"
+    page.close()
+
+
+def test_pictures_stand_on_white_without_a_frame_on_a_dark_page(dark, made):
+    for path in book_pages(made):
+        dark.goto(path.as_uri())
+        for still in dark.evaluate(STYLES, ".cell_output .output img:not(.picture img)"):
+            assert still == {"ground": "rgb(255, 255, 255)", "filter": "none", "padding": "0px"}, path.name
+        for picture in dark.evaluate(STYLES, "article img"):
+            assert picture["filter"] == "none", path.name
+        for around in dark.evaluate(STYLES, ".cell_output .text_html:has(img)"):
+            assert around["ground"] == "rgba(0, 0, 0, 0)", path.name
+
+
+def test_paper_has_dark_letters_whatever_the_screen_has(dark, made):
+    dark.emulate_media(media="print", color_scheme="dark")
+    for path in book_pages(made):
+        dark.goto(path.as_uri())
+        dark.evaluate("dispatchEvent(new Event('beforeprint'))")
+        assert dark.evaluate(PALE) == [], path.name
+        assert dark.locator("article summary:visible").count() == 0
+        links = dark.locator("article a:visible").evaluate_all(UNDERLINED)
+        assert all(links), path.name
+
+
+def test_mission_control_is_seen_whole_on_a_wall(chromium, made):
+    page = chromium.new_page(viewport=WALL)
+    figure = figure_of(page, made, "mission_control-0")
+    page.evaluate("scrollTo(0, 0)")
+    picture = figure.locator(".picture").bounding_box()
+    assert picture["y"] + picture["height"] <= WALL["height"]
+    assert picture["width"] > 1100
+    assert figure.locator("input").first.bounding_box()["y"] < picture["y"]
+    page.close()

@@ -33,60 +33,118 @@ window.hoverslam = { recordings: {} };
         status.replaceWith(room);
         room.append(status);
         const places = recorded.controls.map(control => control.start);
-
         const show = () => {
             const n = places.reduce((sum, place, k) => sum * recorded.controls[k].shown.length + place, 0);
             layer.src = png(recorded.layers[n]);
             layer.alt = status.textContent = recorded.sentences[n];
         };
-        const controls = recorded.controls.map((control, k) => input(control, place => { places[k] = place; show(); }));
+        const controls = recorded.controls.map((control, k) =>
+            row(`${figure.dataset.recording}-${k}`, control, place => {
+                const before = layer.src;
+                places[k] = place;
+                show();
+                if (layer.src !== before) reveal(scroll, before, layer.src);
+            }));
+        const landmarks = recorded.landmarks.map(landmark => {
+            const button = make("button", { type: "button" }, landmark.name);
+            button.addEventListener("click", () => landmark.places.forEach((place, k) => controls[k].put(place)));
+            return button;
+        });
+        const parts = controls.map(control => control.element);
+        if (landmarks.length) parts.push(make("div", { class: "landmarks" }, ...landmarks));
         const kept = recorded.kept.length ? [`Kept here: ${recorded.kept.join(", ")}.`] : [];
-        kept.push("Here only some places are recorded; the notebook has all.");
-        figure.querySelector(".hoverslam-controls").replaceChildren(...controls, make("p", { class: "kept" }, kept.join(" ")));
-        still.replaceWith(make("div", { class: "scroll", tabindex: "0", role: "group", "aria-label": "figure" }, picture));
+        kept.push("Here only some places are recorded; the notebook has all, and every control that is named and not here.");
+        parts.push(make("p", { class: "kept" }, kept.join(" ")));
+        figure.querySelector(".hoverslam-controls").replaceChildren(...parts);
+
+        const scroll = make("div", { class: "scroll", tabindex: "0", role: "group", "aria-label": "figure" }, picture);
+        const hint = make("p", { class: "hint" }, "← The picture is wider than the page: swipe it for the rest. →");
+        still.replaceWith(scroll, hint);
+        new ResizeObserver(() => { hint.hidden = scroll.scrollWidth <= scroll.clientWidth; }).observe(scroll);
         show();
     }
 
-    function input(control, moved) {
-        const text = place => `${control.shown[place]}${control.unit ? ` ${control.unit}` : ""}`;
-        const value = make("output", {}, text(control.start));
-        const field = control.checkbox
-            ? make("input", { type: "checkbox" })
-            : make("input", { type: "range", min: 0, max: control.shown.length - 1, step: 1, value: control.start });
-        if (control.checkbox) field.checked = Boolean(control.start);
-        const tell = () => {
-            const place = control.checkbox ? Number(field.checked) : Number(field.value);
-            value.textContent = text(place);
-            if (!control.checkbox) field.setAttribute("aria-valuetext", text(place));
-            moved(place);
-        };
-        field.addEventListener("input", tell);
-        if (!control.checkbox) field.setAttribute("aria-valuetext", text(control.start));
-        return make("label", {}, make("span", {}, control.name), field, value);
+    // where a picture is wider than the page, its part that has just changed comes into view
+    async function reveal(scroll, ...layers) {
+        const room = scroll.clientWidth;
+        if (scroll.scrollWidth <= room) return;
+        const [before, now] = await Promise.all(layers.map(pixels));
+        const changed = [];
+        for (let n = 3; n < now.data.length; n += 4)
+            if ([0, 1, 2, 3].some(k => Math.abs(before.data[n - k] - now.data[n - k]) > 64)) changed.push(((n >> 2) % now.width) / now.width);
+        if (!changed.length) return;
+        const [left, right] = [Math.min, Math.max].map(end => changed.reduce((one, other) => end(one, other)) * scroll.scrollWidth);
+        if (right - left > room) return;
+        if (left < scroll.scrollLeft || right > scroll.scrollLeft + room) scroll.scrollLeft = (left + right - room) / 2;
     }
 
-    // films can be paused
-    function pausable(film) {
-        const still = document.createElement("canvas");
-        const button = make("button", { type: "button", class: "pause" }, "Pause");
-        button.addEventListener("click", () => {
-            const paused = film.hidden;
-            if (!paused) {
-                still.width = film.naturalWidth;
-                still.height = film.naturalHeight;
-                still.style.width = `${film.clientWidth}px`;
-                still.getContext("2d").drawImage(film, 0, 0);
-            } else {
-                film.src = film.src; // plays from its beginning
-            }
-            film.hidden = !paused;
-            still.hidden = paused;
-            button.textContent = paused ? "Pause" : "Play again";
+    async function pixels(source) {
+        const image = make("img", { src: source });
+        await image.decode();
+        const canvas = make("canvas", { width: image.naturalWidth, height: image.naturalHeight });
+        const drawing = canvas.getContext("2d");
+        drawing.drawImage(image, 0, 0);
+        return drawing.getImageData(0, 0, canvas.width, canvas.height);
+    }
+
+    // a control's name, its field and its value; for fingers a button beside each end, because a place may be narrow
+    function row(id, control, moved) {
+        const text = place => `${control.shown[place]}${control.unit ? ` ${control.unit}` : ""}`;
+        const last = control.shown.length - 1;
+        const value = make("output", { for: id }, text(control.start));
+        const field = control.checkbox
+            ? make("input", { id, type: "checkbox" })
+            : make("input", { id, type: "range", min: 0, max: last, step: 1 });
+        const now = () => (control.checkbox ? Number(field.checked) : Number(field.value));
+        const put = place => {
+            if (control.checkbox) field.checked = Boolean(place);
+            else field.value = place;
+            tell();
+        };
+        const step = (sign, by, where) => {
+            const button = make("button", { type: "button", "aria-label": `${control.name}: one place ${where}` }, sign);
+            button.addEventListener("click", () => put(now() + by));
+            return button;
+        };
+        const down = step("−", -1, "down");
+        const up = step("+", 1, "up");
+        const mark = () => {
+            value.textContent = text(now());
+            if (!control.checkbox) field.setAttribute("aria-valuetext", text(now()));
+            down.disabled = now() === 0;
+            up.disabled = now() === last;
+        };
+        const tell = () => { mark(); moved(now()); };
+        field.addEventListener("input", tell);
+        // a thumb that scrolls past has moved nothing
+        let before = control.start;
+        field.addEventListener("pointerdown", () => { before = now(); });
+        field.addEventListener("pointercancel", () => put(before));
+        if (control.checkbox) field.checked = Boolean(control.start);
+        else field.value = control.start;
+        mark();
+        const beside = control.checkbox ? [field] : [down, field, up];
+        const element = make("div", { class: "control" }, make("label", { for: id }, control.name), ...beside, value);
+        return { element, put };
+    }
+
+    // the page has of each film the last picture, on which it stands still after it has played
+    function stoppable(film) {
+        const still = film.nextElementSibling;
+        const show = moving => { film.hidden = !moving; still.hidden = moving; };
+        const button = (text, act) => {
+            const made = make("button", { type: "button" }, text);
+            made.addEventListener("click", act);
+            return made;
+        };
+        const again = button("Play again", () => {
+            // a browser that has played a film plays it again only from an address that is new to it
+            const mark = film.src.startsWith("data:") ? "#" : "?";
+            film.src = film.src.replace(/[#?]\d+$/, "") + mark + Date.now();
+            show(true);
         });
-        still.hidden = true;
-        still.setAttribute("role", "img");
-        still.setAttribute("aria-label", film.alt);
-        film.after(still, button);
+        still.after(make("div", { class: "film" }, button("Stop", () => show(false)), again));
+        show(!matchMedia("(prefers-reduced-motion: reduce)").matches);
     }
 
     document.addEventListener("DOMContentLoaded", () => {
@@ -103,7 +161,17 @@ window.hoverslam = { recordings: {} };
             }
         }, { rootMargin: "800px" });
         for (const figure of document.querySelectorAll("[data-recording]")) near.observe(figure);
-        for (const film of document.querySelectorAll("img[src^='data:image/gif'], img[src$='.gif']")) pausable(film);
+        for (const still of document.querySelectorAll("img.still")) stoppable(still.previousElementSibling);
+    });
+    // on a phone the page's contents cover what an entry leads to
+    document.addEventListener("click", event => {
+        const link = event.target.closest("dialog a");
+        if (!link) return;
+        const dialog = link.closest("dialog");
+        // when it closes, the theme puts its entries back above the text, which moves
+        const there = () => document.getElementById(decodeURIComponent(link.hash.slice(1)))?.scrollIntoView();
+        dialog.addEventListener("close", there, { once: true });
+        dialog.close();
     });
     // what scrolls is reached by key too; formulas have their width late
     window.addEventListener("load", async () => {
@@ -111,7 +179,13 @@ window.hoverslam = { recordings: {} };
         for (const part of document.querySelectorAll("article .output, article pre, article div, article mjx-container"))
             if (part.scrollWidth > part.clientWidth && getComputedStyle(part).overflowX === "auto") part.tabIndex = 0;
     });
+    // printed are what is folded, too, and dark letters on white
+    const page = document.documentElement.dataset;
+    let theme;
     window.addEventListener("beforeprint", () => {
         for (const folded of document.querySelectorAll("details")) folded.open = true;
+        theme = page.theme;
+        page.theme = "light";
     });
+    window.addEventListener("afterprint", () => { page.theme = theme; });
 })();

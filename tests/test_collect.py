@@ -14,6 +14,7 @@ LESSONS = [path for path in course.lessons() if re.match(r"\d", path.name)]
 FIRST, SECOND = LESSONS[0], LESSONS[2]
 ADDED_UP = "def my_energy_factor(omega, dt, n):\n    return 1 + n * omega**2 * dt**2"
 NEVER_ENDS = """
+checks.energy_factor(lambda omega, dt, n: 1)
 while True:
     try:
         import time

@@ -6,6 +6,7 @@ import re
 import shutil
 import subprocess
 import sys
+import zipfile
 from pathlib import Path
 
 import nbformat
@@ -389,6 +390,8 @@ def test_file_is_the_same_every_time(handed_out, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert course.main(["copy", "new/my class.zip", "--zip", *options]) == 0
     assert (tmp_path / "new" / "my class.zip").read_bytes() == file.read_bytes()
+    with zipfile.ZipFile(file) as packed:
+        assert {member.date_time for member in packed.infolist()} == {(1980, 1, 1, 0, 0, 0)}
 
 
 def test_exercise_answers_in_the_unpacked_folder_by_the_library_that_is_in_it(handed_out):

@@ -229,4 +229,5 @@ def _shown(control, value):
         return ", ".join(str(label) for label, known in labels if known in wanted)
     if isinstance(value, bool):
         return "on" if value else "off"
-    return format(value, getattr(control, "readout_format", "") or "g")
+    shown = format(value, getattr(control, "readout_format", "") or "g")
+    return re.sub(r"e([+-])0", r"e\1", shown)  # browsers write 1e-6

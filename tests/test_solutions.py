@@ -4,6 +4,8 @@
 check has to answer ✔, and every other cell to give its stored output.
 """
 
+import ast
+import builtins
 import re
 import sys
 from pathlib import Path
@@ -38,6 +40,34 @@ def test_solution_stands_in_place_of_each_stub_and_nothing_else_is_changed(path)
             assert "your code here" not in cell.source
             assert "your answer here" not in cell.source
             assert "startswith('✔')" in cell.source
+
+
+@pytest.mark.parametrize("path", LESSONS, ids=lambda path: path.stem)
+def test_solution_uses_no_name_that_its_lesson_does_not_know(path):
+    known = set(dir(builtins))
+    for cell in solved(path).cells:
+        if cell.cell_type != "code":
+            continue
+        names = [node for node in ast.walk(ast.parse(cell.source)) if isinstance(node, ast.Name)]
+        if "startswith('✔')" in cell.source:
+            own = bound(cell.source)
+            assert {name.id for name in names} <= known | own, cell.source
+        known |= bound(cell.source)
+
+
+def bound(source):
+    """Every name that a cell gives a meaning to, inside its functions or outside."""
+    names = set()
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
+            names.add(node.id)
+        elif isinstance(node, ast.alias):
+            names.add((node.asname or node.name).split(".")[0])
+        elif isinstance(node, ast.arg):
+            names.add(node.arg)
+        elif isinstance(node, (ast.FunctionDef, ast.ClassDef)):
+            names.add(node.name)
+    return names
 
 
 def test_cell_raises_where_the_check_is_not_content(monkeypatch, tmp_path):

@@ -4,8 +4,8 @@ A film is made of *scenes*. A scene is a function that draws on axes what stays 
 what moves where it belongs at the time t [s] and returns those artists. The same scene makes the film and its stills.
 """
 
+import io
 import math
-import struct
 import sys
 import time
 from dataclasses import dataclass, replace
@@ -15,7 +15,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.path import Path as Outline
-from PIL import GifImagePlugin, Image
+from PIL import Image
 
 from hoverslam_lib import _validate
 from hoverslam_lib.descent import SOFT_LANDING, Descent, fly
@@ -151,32 +151,15 @@ def _indexed(frames, palette):
 
 
 def _gif(frames, palette, durations):
-    """A GIF that plays `PLAYS` times; a frame stores what has changed, and elsewhere the last colour: transparent.
-
-    Pillow compresses the frames. Its own film writer would give each frame a palette of its own.
-    """
-    height, width = frames[0].shape
-    unchanged = COLOURS - 1
-    colours = palette.astype(np.uint8).tobytes().ljust(3 * COLOURS, b"\0")
-    sizes = struct.pack("<HHBBB", width, height, 0xF0 | COLOURS.bit_length() - 2, 0, 0)
-    again = b"\x21\xff\x0bNETSCAPE2.0\x03\x01" + struct.pack("<HB", PLAYS - 1, 0)
-    parts = [b"GIF89a", sizes, colours, again]
-    before = None
-    for frame, duration in zip(frames, durations, strict=True):
-        rows, columns = slice(0, height), slice(0, width)
-        shown = frame
-        if before is not None:
-            changed = frame != before
-            ys, xs = (np.flatnonzero(changed.any(axis)) for axis in (1, 0))
-            rows = slice(ys[0], ys[-1] + 1) if len(ys) else slice(0, 1)
-            columns = slice(xs[0], xs[-1] + 1) if len(xs) else slice(0, 1)
-            shown = np.where(changed, frame, unchanged)[rows, columns]
-        image = Image.fromarray(np.ascontiguousarray(shown, dtype=np.uint8)).convert("L")
+    """A GIF that plays `PLAYS` times, all its frames with one palette; Pillow stores of each what has changed."""
+    colours = palette.astype(np.uint8).tobytes()
+    images = [Image.fromarray(frame) for frame in frames]
+    for image in images:
         image.putpalette(colours)
-        timing = {"duration": duration, "transparency": unchanged, "disposal": 1}
-        parts += GifImagePlugin.getdata(image, (columns.start, rows.start), **timing)
-        before = frame
-    return b"".join([*parts, b";"])
+    kept = io.BytesIO()
+    timing = {"duration": durations, "loop": PLAYS - 1, "disposal": 1}
+    images[0].save(kept, "gif", save_all=True, append_images=images[1:], palette=colours, optimize=True, **timing)
+    return kept.getvalue()
 
 
 def _render(fig, move, times):

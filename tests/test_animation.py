@@ -40,6 +40,17 @@ def decoded(gif):
     return frames
 
 
+def shown(film):
+    """What is on the screen in each frame of a film, as long as it was asked for; equal frames are stored as one."""
+    frames = []
+    for picture, ms in decoded(film.gif):
+        while ms > 0:
+            ms -= film.durations[len(frames)]
+            frames.append(picture)
+        assert ms == 0
+    return frames
+
+
 def local_palettes(gif):
     """For each picture of a GIF, whether it has a palette of its own; read from the bytes."""
     found, at = [], 13 + 3 * 2 ** ((gif[10] & 7) + 1)
@@ -72,15 +83,14 @@ def spot_film(times, **options):
 
 
 def test_film_has_the_frames_and_durations_that_were_asked_for(landing, times):
-    frames = decoded(landing.gif)
-    assert len(frames) == len(times) == len(landing.frames)
+    assert len(shown(landing)) == len(times)
     assert landing.frames == tuple(times)
-    assert [ms for _, ms in frames] == [100] * (len(times) - 1) + [2000] == list(landing.durations)
+    assert list(landing.durations) == [100] * (len(times) - 1) + [2000]
     assert Image.open(io.BytesIO(landing.gif)).info["loop"] == 2  # times more
 
 
 def test_numbers_stand_long_enough_to_be_read_and_the_last_ones_are_those_of_the_last_frame(landing):
-    right = [frame[:, 230:] for frame, _ in decoded(landing.gif)]
+    right = [frame[:, 230:] for frame in shown(landing)]
     changed = [np.any(a != b) for a, b in zip(right, right[1:], strict=False)]
     assert landing.durations[0] == animation.LEGIBLE / 2
     assert changed == [n % 2 == len(changed) % 2 for n in range(1, len(changed) + 1)]
@@ -89,7 +99,6 @@ def test_numbers_stand_long_enough_to_be_read_and_the_last_ones_are_those_of_the
 def test_film_has_one_palette_and_few_colours(landing):
     assert landing.gif[10] & 0x80
     assert not any(local_palettes(landing.gif))
-    assert len(local_palettes(landing.gif)) == len(landing.frames)
     colours = {tuple(c) for frame, _ in decoded(landing.gif) for c in np.unique(frame.reshape(-1, 3), axis=0)}
     assert (255, 255, 255) in colours
     assert tuple(BODY) in colours
@@ -108,7 +117,7 @@ def test_same_film_has_the_same_bytes(landing, landed, times):
 
 def test_spot_is_where_it_belongs_in_every_frame():
     times = np.linspace(1, 9, 9)
-    for t, (frame, _) in zip(times, decoded(spot_film(times).gif), strict=True):
+    for t, frame in zip(times, shown(spot_film(times)), strict=True):
         rows, columns = np.nonzero(frame.sum(axis=2) < 200)
         assert columns.mean() == pytest.approx(20 * t - 0.5, abs=1)
         assert rows.mean() == pytest.approx(199.5 - 20 * t, abs=1)
@@ -116,12 +125,11 @@ def test_spot_is_where_it_belongs_in_every_frame():
 
 def test_frame_without_a_change_is_kept():
     times = np.array([5.0, 5.0001, 5.0002])
-    assert [ms for _, ms in decoded(spot_film(times, duration=50, hold=500).gif)] in ([50, 50, 500], [100, 500], [600])
-    assert len(local_palettes(spot_film(times).gif)) == 3
+    assert len(shown(spot_film(times, duration=50, hold=500))) == 3
 
 
 def test_tip_of_the_booster_follows_the_height_of_the_flight(landing, landed, times):
-    left = [abs(frame[:, :200] - BODY).sum(axis=2) < 60 for frame, _ in decoded(landing.gif)]
+    left = [abs(frame[:, :200] - BODY).sum(axis=2) < 60 for frame in shown(landing)]
     tip = np.array([np.flatnonzero(blue.any(axis=1))[0] for blue in left])
     height = np.interp(times, landed.t, landed.h)
     slope, ground = np.polyfit(height, tip, 1)

@@ -43,3 +43,5 @@ __all__ = [
     "rmse",
     "speed_after_fall",
 ]
+
+__version__ = "1.1.0"

@@ -1,4 +1,5 @@
 import ast
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -93,3 +94,10 @@ def test_a_flight_needs_numpy_alone():
         "import sys; from hoverslam_lib import *; d = Descent(); fly(d, best_ignition(d).t_ignite); print(*sys.modules)"
     )
     assert not set(run(code).split()) & {"matplotlib", "ipywidgets", "pandas", "scipy"}
+
+
+def test_version_is_the_one_that_is_cited_and_the_newest_in_the_changelog():
+    version = hoverslam_lib.__version__
+    cited, changes = (FOLDER.parent.joinpath(name).read_text(encoding="utf-8") for name in ("CITATION.cff", "CHANGELOG.md"))
+    assert f"\nversion: {version}\n" in cited
+    assert re.search(r"^## (.+)$", changes, re.MULTILINE)[1] == version

@@ -98,6 +98,6 @@ def test_a_flight_needs_numpy_alone():
 
 def test_version_is_the_one_that_is_cited_and_the_newest_in_the_changelog():
     version = hoverslam_lib.__version__
-    cited, changes = (FOLDER.parent.joinpath(name).read_text(encoding="utf-8") for name in ("CITATION.cff", "CHANGELOG.md"))
-    assert f"\nversion: {version}\n" in cited
+    assert f"\nversion: {version}\n" in FOLDER.parent.joinpath("CITATION.cff").read_text(encoding="utf-8")
+    changes = FOLDER.parent.joinpath("CHANGELOG.md").read_text(encoding="utf-8")
     assert re.search(r"^## (.+)$", changes, re.MULTILINE)[1] == version

@@ -23,6 +23,7 @@ WRONG = {
         (lambda p, confidence: math.ceil(math.log(1 - confidence, 10) / math.log(1 - p)), None),
         (lambda p, confidence: int(np.log(1 - confidence) / np.log(1 - p)), "rounded down"),
         (lambda p, confidence: math.ceil(-math.log(1 - confidence) / p), "logarithm for p"),
+        (lambda p, confidence: int(math.log(1 - confidence) / math.log(1 - p)) + 1, "always up"),
         (lambda p, confidence: (1 - p) ** confidence, None),
     ],
     "12.3": [
@@ -34,6 +35,6 @@ WRONG = {
 
 RIGHT = {
     "12.1": [(178, 1500), (np.sqrt(31_556), 1_450)],
-    "12.2": [lambda p, confidence: int(np.log(1 - confidence) / np.log(1 - p)) + 1],
+    "12.2": [lambda p, confidence: next(n for n in range(1, 10_000) if (1 - p) ** n <= 1 - confidence)],
     "12.3": [_chance, lambda heights, window, reach: np.array(_chance(heights, window, reach))],
 }

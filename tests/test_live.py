@@ -4,7 +4,6 @@ import gc
 import io
 import itertools
 import math
-import os
 import re
 import sys
 from dataclasses import replace
@@ -34,7 +33,7 @@ from hoverslam_lib import FALCON_9, Descent, FreeFall, course, fly, live, publis
 from hoverslam_lib.live import Live, on_grid, verdict
 from hoverslam_lib.mission_control import Methods
 
-POSITIONS = int(os.environ.get("LIVE_POSITIONS", "100"))
+POSITIONS = 100
 NOTEBOOKS = [path for path in course.lessons() if "Live(" in path.read_text() or "MissionControl" in path.read_text()]
 
 

@@ -100,7 +100,11 @@ ONE_NUMBER = {
     "published.acceleration t_ignite": (published.acceleration, "t_ignite", "[s]"),
     "published.optimisation_table dt": (published.optimisation_table, "dt", "[s]"),
     "pace duration": (lambda x: animation.pace([1.0, 2.0], x), "duration", "[ms]"),
-    "throttle": (lambda x: fly(PAPER, 60.0, dt=0.5, controller=lambda t, h, v, mass: x), "controller(t, h, v, mass)", "throttle"),
+    "throttle": (
+        lambda x: fly(PAPER, 60.0, dt=0.5, controller=lambda t, h, v, mass: x),
+        "controller(t, h, v, mass)",
+        "throttle",
+    ),
     "mission control": (lambda x: try_out(PAPER, x, 0.1, "rk4"), "t_ignite", "[s]"),
     **{
         f"Oscillator {name}": (lambda x, name=name: Oscillator(**{name: x}), name, "")
@@ -530,7 +534,9 @@ def test_command_that_cannot_be_done_is_a_sentence_and_does_nothing(command, mes
     assert re.fullmatch(rf".*{message}.*\n", said.err)
 
 
-@pytest.mark.parametrize("command", [[], ["nothing"], ["copy"], ["copy", "a", "b"], ["copy", "a", "--lessons", "1"]], ids=repr)
+@pytest.mark.parametrize(
+    "command", [[], ["nothing"], ["copy"], ["copy", "a", "b"], ["copy", "a", "--lessons", "1"]], ids=repr
+)
 def test_command_that_does_not_exist_tells_those_that_do(command, capsys):
     with pytest.raises(SystemExit) as caught:
         course.main(command)

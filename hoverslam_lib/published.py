@@ -13,7 +13,7 @@ import numpy as np
 from hoverslam_lib import _validate
 from hoverslam_lib.booster import FALCON_9
 from hoverslam_lib.data import load
-from hoverslam_lib.descent import Descent
+from hoverslam_lib.descent import Descent, Flight
 from hoverslam_lib.integrators import step_function
 from hoverslam_lib.metrics import samples
 from hoverslam_lib.oscillator import Oscillator
@@ -144,7 +144,7 @@ def listed(run, *, at_rest=False):
 
     Parameters
     ----------
-    run : Trajectory
+    run : Trajectory or Flight
     at_rest : bool
         Where the tables say "hdot = 0": the height where v first changes sign, on a straight line between two rows.
 
@@ -153,7 +153,7 @@ def listed(run, *, at_rest=False):
     h, v : float
         [m], [m/s]; a height below the ground is 0, as printed.
     """
-    _validate.instance("run", run, Trajectory)
+    _validate.instance("run", run, Trajectory, Flight)
     if at_rest:
         rising = np.flatnonzero((run.v[:-1] < 0) & (run.v[1:] >= 0))
         if rising.size:

@@ -291,7 +291,7 @@ CALLS = {
     "a table of times": (lambda: fly_all(PAPER, np.ones((2, 2))), TypeError, "t_ignite must be a finite number"),
     "a best of two": (lambda: best_ignition(PAPER, 60.0), TypeError, "takes 1 positional argument but 2 were given"),
     # the paper's programs and the tables
-    "no run": (lambda: published.listed(None), TypeError, "run must be a Trajectory; got None"),
+    "no run": (lambda: published.listed(None), TypeError, "run must be a Trajectory or a Flight; got None"),
     "another table": (
         lambda: published.optimisation_table(0.03),
         ValueError,

@@ -64,20 +64,46 @@ def one_length(columns):
         raise ValueError(f"all columns must have the same number of rows: {rows}")
 
 
-def state(name, value, unit=""):
-    """Return a finite float, or a float array of finite numbers: an initial value of a run."""
-    if isinstance(value, Real):
-        return number(name, value, unit)
+def array(name, value, unit=""):
+    """Return a new float array, or raise unless `value` is a number or an array of numbers, finite or not."""
     try:
         result = np.array(value)
     except ValueError:  # rows of different lengths
         result = np.array(None)
     if result.dtype.kind not in "iuf":
-        raise TypeError(f"{name} must be a number or an array of numbers [{unit}]; got {value!r}")
-    result = result.astype(float)
+        raise TypeError(f"{name} must be a number or an array of numbers{f' [{unit}]' if unit else ''}; got {value!r}")
+    return result.astype(float)
+
+
+def state(name, value, unit=""):
+    """Return a finite float, or a float array of finite numbers: an initial value of a run."""
+    if isinstance(value, Real):
+        return number(name, value, unit)
+    result = array(name, value, unit)
     if not np.all(np.isfinite(result)):
         raise ValueError(f"{name} must be finite everywhere [{unit}]; got {value!r}")
     return result
+
+
+def instance(name, value, *kinds):
+    """Raise unless `value` is of one of these classes."""
+    if not isinstance(value, kinds):
+        raise TypeError(f"{name} must be a {' or a '.join(kind.__name__ for kind in kinds)}; got {value!r}")
+
+
+def function(name, value, *arguments):
+    """Raise unless `value` can be called."""
+    if not callable(value):
+        raise TypeError(f"{name} must be a function of ({', '.join(arguments)}); got {value!r}")
+
+
+def alternative_text(alt, what):
+    """The text on one line, or raise unless it is one that says something."""
+    if not isinstance(alt, str):
+        raise TypeError(f"alt must be a text that says what the {what} shows; got {alt!r}")
+    if not alt.strip():
+        raise ValueError(f"alt must say what the {what} shows")
+    return " ".join(alt.split())
 
 
 def step_count(duration, dt):

@@ -18,7 +18,7 @@ from matplotlib.path import Path as Outline
 from PIL import Image
 
 from hoverslam_lib import _validate
-from hoverslam_lib.descent import SOFT_LANDING, Descent, fly
+from hoverslam_lib.descent import SOFT_LANDING, Descent, Flight, fly
 from hoverslam_lib.ignition import best_ignition
 from hoverslam_lib.plotting import Picture, use_style
 
@@ -110,12 +110,11 @@ def film(fig, move, times, *, alt, duration=40, hold=2000):
     """
     times = _frame_times(times)
     durations = [_hundredths("duration", duration)] * (len(times) - 1) + [_hundredths("hold", hold)]
-    if not alt.strip():
-        raise ValueError("alt must say what the film shows")
+    alt = _validate.alternative_text(alt, "film")
     frames = _render(fig, move, times)
     palette = _palette(frames[:: max(1, len(frames) // 8)] + frames[-1:])
     gif = _gif(_indexed(frames, palette), palette, durations)
-    return Animation(gif, " ".join(alt.split()), tuple(times.tolist()), tuple(durations), frames[0].shape[1])
+    return Animation(gif, alt, tuple(times.tolist()), tuple(durations), frames[0].shape[1])
 
 
 def _palette(frames):
@@ -203,11 +202,16 @@ def resample(flight, times):
     ValueError
         If a time lies outside the flight.
     """
-    times = _frame_times(times)
-    if times[0] < flight.t[0] or times[-1] > flight.t[-1]:
+    _validate.instance("flight", flight, Flight)
+    times, start, end = _frame_times(times), flight.t[0], flight.t[-1]
+    if times[0] < start or times[-1] > end:
+        in_ms = (
+            f" (did you mean {times[0]:g} to {times[-1]:g} ms?)"
+            if start <= times[0] / 1e3 <= times[-1] / 1e3 <= end
+            else ""
+        )
         raise ValueError(
-            f"times must lie within the flight, {flight.t[0]:g} to {flight.t[-1]:g} s; "
-            f"got {times[0]:g} to {times[-1]:g} s"
+            f"times must lie within the flight, {start:g} to {end:g} s; got {times[0]:g} to {times[-1]:g} s{in_ms}"
         )
     i = np.clip(np.searchsorted(flight.t, times, side="right") - 1, 0, len(flight.t) - 2)
     length = flight.t[i + 1] - flight.t[i]
@@ -329,7 +333,7 @@ def instruments(ax, flight):
 
 def pace(times, duration):
     """How fast a film runs, for each frame, in words: from its own times [s] and the time a frame is shown [ms]."""
-    times = _frame_times(times)
+    times, duration = _frame_times(times), _hundredths("duration", duration)
     if len(times) < 2:
         return ["still"] * len(times)
     ratios = np.diff(times) * 1e3 / duration
@@ -404,7 +408,7 @@ def landing_stills(flight, times, *, top=None):
         The largest height to be shown [m]; that of the first picture if it is left out.
     """
     times = _frame_times(times)
-    top = float(resample(flight, times[:1]).h[0]) if top is None else top
+    top = float(resample(flight, times[:1]).h[0]) if top is None else _validate.number("top", top, "m", above=0)
     fig = Figure(figsize=(1.85 * len(times), 3.4))
     for n, (ax, t) in enumerate(zip(fig.subplots(1, len(times), squeeze=False)[0], times, strict=True)):
         booster_scene(ax, flight, top=top)(t)
@@ -416,10 +420,7 @@ def landing_stills(flight, times, *, top=None):
 
 
 def _frame_times(times):
-    try:
-        times = np.array(times, dtype=float)
-    except (TypeError, ValueError):
-        raise TypeError(f"times must be numbers [s]; got {times!r}") from None
+    times = _validate.array("times", times, "s")
     if times.ndim != 1 or not len(times) or not np.all(np.isfinite(times)) or np.any(np.diff(times) <= 0):
         raise ValueError(f"times must be one or more finite numbers [s], increasing; got {times!r}")
     return times

@@ -291,6 +291,8 @@ def zipped(folder, for_teaching=False, withhold_solutions=False):
         If the file system refuses.
     """
     folder, project = Path(folder), NOTEBOOKS.parent
+    if folder.name in ("", ".."):
+        raise ValueError(f"{folder} is no name for a file: choose one, such as my_course")
     target = folder.with_name(f"{folder.name.removesuffix('.zip')}.zip")
     if os.path.lexists(target):
         raise ValueError(f"{target} is there already and left as it is: name another")

@@ -32,6 +32,6 @@ def load(name):
             "it from there with `pip install -r environment.txt`"
         )
     names = sorted(path.stem for path in FOLDER.glob("*.csv"))
-    if name not in names:
+    if not isinstance(name, str) or name not in names:
         raise ValueError(f"there is no table {name!r}; there are {', '.join(names)}")
     return pd.read_csv(FOLDER / f"{name}.csv")

@@ -234,7 +234,7 @@ def step_function(method):
     ValueError
         If there is no such method; the message lists those there are.
     """
-    if callable(method):
+    if callable(method) and not isinstance(method, type):
         return method
     if isinstance(method, str) and method in METHODS:
         return METHODS[method].step

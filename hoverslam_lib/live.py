@@ -14,8 +14,17 @@ from IPython import get_ipython
 from IPython.display import display
 from ipywidgets import HTML, FloatLogSlider, FloatRangeSlider, FloatSlider, IntSlider, VBox
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
 
-from hoverslam_lib.descent import OUT_OF_PROPELLANT, SOFT_LANDING, SOFT_SPEED, STOPPED_TOO_HIGH, speed_after_fall
+from hoverslam_lib import _validate
+from hoverslam_lib.descent import (
+    OUT_OF_PROPELLANT,
+    SOFT_LANDING,
+    SOFT_SPEED,
+    STOPPED_TOO_HIGH,
+    Flight,
+    speed_after_fall,
+)
 from hoverslam_lib.plotting import Picture, _png
 
 STILL = "Run this cell to make it live."
@@ -92,6 +101,11 @@ class Live:
     """
 
     def __init__(self, fig, update, *, recorded=None, landmarks=None, **controls):
+        _validate.instance("fig", fig, Figure)
+        _validate.function("update", update, *controls)
+        for name, control in controls.items():
+            if not hasattr(control, "observe"):
+                raise TypeError(f"{name} must be a control of ipywidgets, such as a FloatSlider; got {control!r}")
         plt.close(fig)
         self.fig, self.update, self.controls = fig, update, controls
         self.recorded, self.landmarks = recorded, landmarks or {}
@@ -129,6 +143,9 @@ class Live:
     def set(self, **values):
         """Give controls new values and draw once."""
         for name in values:
+            if name not in self.controls:
+                raise ValueError(f"there is no control {name!r}; there are {', '.join(self.controls)}")
+        for name in values:
             self.controls[name].unobserve(self._follow, "value")
         try:
             for name, value in values.items():
@@ -136,7 +153,7 @@ class Live:
         finally:
             for name in values:
                 self.controls[name].observe(self._follow, "value")
-        self._follow()
+            self._follow()
 
     def show(self):
         """Show the controls and the figure; where they cannot live, a still picture of them shows instead."""
@@ -221,9 +238,9 @@ def on_grid(value, slider):
     Returns
     -------
     float
-        min + k·step, rounded to as many decimals as these have, or max; the value itself if there is no step.
+        min + k·step, rounded to as many decimals as these have, or max; the value itself if there is no step, and nan.
     """
-    if not slider.step:
+    if not slider.step or math.isnan(value):
         return value
     value = min(max(value, slider.min), slider.max)
     decimals = max(-Decimal(repr(number)).as_tuple().exponent for number in (slider.min, slider.step))
@@ -247,6 +264,7 @@ def verdict(flight, height, brief=False):
     -------
     str
     """
+    _validate.instance("flight", flight, Flight)
     if flight.outcome == SOFT_LANDING:
         said = f"{SOFT_LANDING} with {abs(flight.touchdown[1]):.2f} m/s"
         if flight.hover and flight.hover[0] == flight.t[-2]:

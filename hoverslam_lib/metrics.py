@@ -5,6 +5,8 @@
 
 import numpy as np
 
+from hoverslam_lib import _validate
+
 
 def mape(exact, approx):
     """Mean absolute percentage error, eq. 4.3 of the paper, as a fraction (no factor 100).
@@ -23,10 +25,10 @@ def mape(exact, approx):
 
     Raises
     ------
-    ValueError
-        If the shapes differ, or if an exact value is 0, where eq. 4.3 is undefined.
+    ValueError, TypeError
+        If the shapes differ, if they are no numbers, or if an exact value is 0, where eq. 4.3 is undefined.
     """
-    exact, approx = _pair(exact, approx)
+    exact, approx = samples(exact=exact, approx=approx)
     zeros = np.flatnonzero(exact == 0)
     if zeros.size:
         raise ValueError(
@@ -49,10 +51,10 @@ def nmae(exact, approx):
 
     Raises
     ------
-    ValueError
-        If the shapes differ, or if the exact solution is 0 throughout.
+    ValueError, TypeError
+        If the shapes differ, if they are no numbers, or if the exact solution is 0 throughout.
     """
-    exact, approx = _pair(exact, approx)
+    exact, approx = samples(exact=exact, approx=approx)
     amplitude = np.max(np.abs(exact))
     if amplitude == 0:
         raise ValueError("nmae is undefined for an exact solution that is 0 throughout: use max_error")
@@ -61,13 +63,13 @@ def nmae(exact, approx):
 
 def rmse(exact, approx):
     """Root mean square error, in the unit of the samples."""
-    exact, approx = _pair(exact, approx)
+    exact, approx = samples(exact=exact, approx=approx)
     return float(np.sqrt(np.mean((exact - approx) ** 2)))
 
 
 def max_error(exact, approx):
     """Largest absolute error over all samples (the max-norm), in the unit of the samples."""
-    exact, approx = _pair(exact, approx)
+    exact, approx = samples(exact=exact, approx=approx)
     return float(np.max(np.abs(exact - approx)))
 
 
@@ -89,22 +91,23 @@ def observed_order(dt, error):
     Raises
     ------
     ValueError
-        If there are fewer than two values or one is not greater than 0.
+        If there are fewer than two values or one is not finite and greater than 0.
     """
-    dt, error = _pair(dt, error)
-    if dt.ndim != 1 or dt.size < 2 or np.ptp(dt) == 0:
+    dt, error = samples(dt=dt, error=error)
+    if dt.ndim != 1 or dt.size < 2 or np.all(dt == dt[0]):
         raise ValueError("observed_order needs at least two different values of dt")
-    if not (np.all(dt > 0) and np.all(error > 0)):
-        raise ValueError("observed_order needs every dt and every error greater than 0")
+    if not (np.all((dt > 0) & (dt < np.inf)) and np.all((error > 0) & (error < np.inf))):
+        raise ValueError("observed_order needs every dt and every error finite and greater than 0")
     x, y = np.log(dt), np.log(error)
     x = x - x.mean()
     return float(x @ y / (x @ x))
 
 
-def _pair(a, b):
-    a, b = np.asarray(a, dtype=float), np.asarray(b, dtype=float)
+def samples(**pair):
+    """Two arrays of samples, given by name, as float arrays of one shape."""
+    a, b = (_validate.array(name, value) for name, value in pair.items())
     if a.shape != b.shape:
-        raise ValueError(f"both arrays must have the same shape; got {a.shape} and {b.shape}")
+        raise ValueError(f"{' and '.join(pair)} must have the same shape; got {a.shape} and {b.shape}")
     if a.size == 0:
-        raise ValueError("there are no samples")
+        raise ValueError(f"there are no samples in {' and '.join(pair)}")
     return a, b

@@ -263,10 +263,14 @@ class MissionControl:
         self.live.set(t_ignite=round(best.t_ignite, 6), faults=False)
 
     def keep(self, _=None):
-        """Add what is shown to the table of trials."""
+        """Add what is shown to the table of trials; nothing where the page says why it is not possible."""
         values = self.live.values()
-        for method in values["methods"]:
-            trial = try_out(self._descent(**values), values["t_ignite"], values["dt"], method, values["faults"])
+        how = values["t_ignite"], values["dt"]
+        try:
+            trials = {m: try_out(self._descent(**values), *how, m, values["faults"]) for m in values["methods"]}
+        except (ValueError, ArithmeticError):
+            return
+        for method, trial in trials.items():
             row = {"t_ignite [s]": values["t_ignite"], "dt [s]": values["dt"], "method": method}
             row |= {"thrust [MN]": values["thrust"], "drag coefficient": values["drag"], "planet": values["planet"]}
             row |= {"equation": "published" if values["faults"] else "right"}
@@ -290,7 +294,7 @@ class MissionControl:
 
         # each follows the other to another place only: browsers send places back, a bit beside
         def apart():
-            return on_grid(slider.value, slider) != on_grid(number.value, slider)
+            return not math.isnan(number.value) and on_grid(slider.value, slider) != on_grid(number.value, slider)
 
         def typed(change):
             if apart():

@@ -9,9 +9,13 @@ from pathlib import Path
 import matplotlib
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.figure import Figure
 from PIL import Image
 
+from hoverslam_lib import _validate
+from hoverslam_lib.descent import Flight
 from hoverslam_lib.integrators import METHODS
+from hoverslam_lib.trajectory import Trajectory
 
 STYLE_SHEET = Path(__file__).with_name("hoverslam.mplstyle")
 
@@ -60,6 +64,8 @@ def use_style():
 
 def line(method, **changes):
     """Colour, line style and label of a method, the same in every lesson: ``ax.plot(t, h, **line("rk4"))``."""
+    if not isinstance(method, str) or method not in _LINES:
+        raise ValueError(f"there is no method {method!r}; choose from {', '.join(_LINES)}")
     color, linestyle = _LINES[method]
     return {"color": color, "linestyle": linestyle, "label": METHODS[method].title, **changes}
 
@@ -94,14 +100,14 @@ def show(fig, *, alt):
 
     Raises
     ------
-    ValueError
-        If `alt` is empty.
+    ValueError, TypeError
+        If `alt` is empty, or `fig` is no figure.
     """
     from IPython.display import display
 
-    if not alt.strip():
-        raise ValueError("alt must say what the figure shows")
-    display(Picture(_png(fig), " ".join(alt.split()), round(fig.get_figwidth() * fig.dpi)))
+    _validate.instance("fig", fig, Figure)
+    alt = _validate.alternative_text(alt, "figure")
+    display(Picture(_png(fig), alt, round(fig.get_figwidth() * fig.dpi)))
     plt.close(fig)
 
 
@@ -125,19 +131,33 @@ def figure(title="", *, x="", y="", alt, **subplots):
 
     Raises
     ------
-    ValueError
+    ValueError, TypeError
         If `alt` is empty, or if there is not one text for each of the axes.
     """
-    fig, axes = plt.subplots(**subplots)
+    alt, others = _validate.alternative_text(alt, "figure"), plt.get_fignums()
+    try:
+        fig, axes = plt.subplots(**subplots)
+    except Exception:  # it leaves a figure without axes
+        for number in set(plt.get_fignums()).difference(others):
+            plt.close(number)
+        raise
     try:
         each = np.ravel(axes)
-        texts = [[text] * len(each) if isinstance(text, str) else text for text in (title, x, y)]
+        texts = [_one_each(*given, len(each)) for given in (("title", title), ("x", x), ("y", y))]
         for ax, of_title, of_x, of_y in zip(each, *texts, strict=True):
             ax.set(title=of_title, xlabel=of_x, ylabel=of_y)
         yield axes
         show(fig, alt=alt)
     finally:
         plt.close(fig)
+
+
+def _one_each(name, texts, n):
+    """A text for each of n axes."""
+    texts = [texts] * n if isinstance(texts, str) else texts
+    if not (isinstance(texts, list | tuple) and len(texts) == n and all(isinstance(text, str) for text in texts)):
+        raise ValueError(f"{name} must be one text, or a list of {n}, one for each of the axes; got {texts!r}")
+    return texts
 
 
 def _png(fig):
@@ -172,6 +192,9 @@ def flight(axes, flown, *, color="#009E73", name=None):
         For the height [km] and the velocity [m/s].
     flown : Flight or Trajectory
     """
+    _validate.instance("flown", flown, Flight, Trajectory)
+    if np.shape(axes) != (2,):
+        raise ValueError(f"axes must be two, for the height and for the velocity; got {axes!r}")
     end = hover_end(flown)
     for ax, values, name_of_axis in zip(axes, (flown.h / 1e3, flown.v), ("h [km]", "v [m/s]"), strict=True):
         ax.plot(flown.t[:end], values[:end], color=color, label=name)

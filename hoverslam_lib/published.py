@@ -13,8 +13,9 @@ import numpy as np
 from hoverslam_lib import _validate
 from hoverslam_lib.booster import FALCON_9
 from hoverslam_lib.data import load
-from hoverslam_lib.descent import Descent
+from hoverslam_lib.descent import Descent, Flight
 from hoverslam_lib.integrators import step_function
+from hoverslam_lib.metrics import samples
 from hoverslam_lib.oscillator import Oscillator
 from hoverslam_lib.planet import EARTH
 from hoverslam_lib.trajectory import Trajectory
@@ -143,7 +144,7 @@ def listed(run, *, at_rest=False):
 
     Parameters
     ----------
-    run : Trajectory
+    run : Trajectory or Flight
     at_rest : bool
         Where the tables say "hdot = 0": the height where v first changes sign, on a straight line between two rows.
 
@@ -152,6 +153,7 @@ def listed(run, *, at_rest=False):
     h, v : float
         [m], [m/s]; a height below the ground is 0, as printed.
     """
+    _validate.instance("run", run, Trajectory, Flight)
     if at_rest:
         rising = np.flatnonzero((run.v[:-1] < 0) & (run.v[1:] >= 0))
         if rising.size:
@@ -183,7 +185,7 @@ def optimisation_table(dt):
     """
     import pandas as pd
 
-    printed = load("optimisation_tables")
+    dt, printed = _validate.number("dt", dt, "s"), load("optimisation_tables")
     if dt not in set(printed["dt"]):
         raise ValueError(f"the paper has tables for dt = 0.02, 0.05 and 0.1 s; got {dt!r}")
     cells = printed[printed["dt"] == dt].pivot(index=["t_ignite", "method"], columns="quantity", values="value")
@@ -261,6 +263,7 @@ def listing_2_mape(exact, approx):
     float
         Dimensionless.
     """
+    exact, approx = samples(exact=exact, approx=approx)
     return float(1 / len(exact) * ((exact[-1] - approx[-1]) / exact[-1]))
 
 

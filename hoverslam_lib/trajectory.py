@@ -86,14 +86,16 @@ def integrate(f, h0, v0, *, dt, t_end, t0=0.0, method="rk4"):
     Raises
     ------
     ValueError, TypeError
-        If an argument is not finite, dt is not greater than 0, t_end lies before t0, the method is unknown, or the
-        run would take more than ten million steps.
+        If an argument is not finite, dt is not greater than 0, t_end lies before t0, the method is unknown, the run
+        would take more than ten million steps, or f or a step function of one's own returns something else than it
+        should.
     """
     dt = _validate.number("dt", dt, "s", above=0)
     t = t0 = _validate.number("t0", t0, "s")
     t_end = _validate.number("t_end", t_end, "s", least=t0)
     _validate.step_count(t_end - t0, dt)
     step = step_function(method)
+    _validate.function("f", f, "t", "h", "v")
     h, v = _validate.state("h0", h0, "m"), _validate.state("v0", v0, "m/s")
     if np.shape(h) != np.shape(v):
         try:
@@ -104,10 +106,36 @@ def integrate(f, h0, v0, *, dt, t_end, t0=0.0, method="rk4"):
             ) from None
 
     ts, hs, vs = [t], [h], [v]
-    for t_next in time_grid(t0, t_end, dt):
-        h, v = step(f, t, h, v, t_next - t)
-        t = t_next
-        ts.append(t)
-        hs.append(h)
-        vs.append(v)
-    return Trajectory(np.array(ts), np.array(hs), np.array(vs))
+    try:
+        for t_next in time_grid(t0, t_end, dt):
+            h, v = step(f, t, h, v, t_next - t)
+            t = t_next
+            ts.append(t)
+            hs.append(h)
+            vs.append(v)
+        run = Trajectory(np.array(ts), np.array(hs), np.array(vs))
+    except (TypeError, ValueError):
+        for moment in ((ts[0], hs[0], vs[0]), (t, h, v)):
+            _require_acceleration(f, *moment)
+            _require_state(step, f, *moment, dt)
+        raise
+    if np.iscomplexobj(run.v):
+        t = next(t for t, v in zip(ts, vs, strict=True) if np.iscomplexobj(v))
+        raise ValueError(f"from t = {t:g} s on v is a complex number: is a root of a negative number taken in f?")
+    return run
+
+
+def _require_acceleration(f, t, h, v):
+    """Raise if it is f that spoils a step from (t, h, v)."""
+    said = f(t, h, v)
+    if np.asarray(said).dtype.kind not in "iufc" or np.shape(said) not in ((), np.shape(h)):
+        shape = f"one number, or an array of shape {np.shape(h)}" if np.ndim(h) else "one number"
+        missing = ": is a `return` missing?" if said is None else ""
+        raise TypeError(f"f(t, h, v) must return the acceleration [m/s²], {shape}; got {said!r}{missing}") from None
+
+
+def _require_state(step, f, t, h, v, dt):
+    """Raise if it is a step function of one's own that spoils a step from (t, h, v)."""
+    made = step(f, t, h, v, dt)
+    if not isinstance(made, tuple | list) or [np.shape(x) for x in made] != 2 * [np.shape(h)]:
+        raise TypeError(f"the step function must return h and v, as they were given; got {made!r}") from None

@@ -77,7 +77,10 @@ def test_figure_takes_a_text_for_each_of_several_axes(shown):
             ("a", "t [s]", "h [m]"),
             ("b", "t [s]", "v [m/s]"),
         ]
-    with pytest.raises(ValueError, match="shorter"), plotting.figure(y=("h [m]",), alt="2 lines", ncols=2):
+    with (
+        pytest.raises(ValueError, match="y must be .* a list of 2"),
+        plotting.figure(y=("h [m]",), alt="2 lines", ncols=2),
+    ):
         pass
     assert plt.get_fignums() == []
 

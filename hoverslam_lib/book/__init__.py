@@ -70,6 +70,7 @@ def build(paths, folder, *, for_students=False, unfold=False, withhold_solutions
     folder = Path(folder)
     if folder.exists() and any(folder.iterdir()) and not (folder / "_static" / "recorded.js").exists():
         raise ValueError(f"{folder} holds other files and no book: name a new folder")
+    folder.mkdir(parents=True, exist_ok=True)  # what the file system refuses, it refuses before the work
     names = record_all(paths)
     with tempfile.TemporaryDirectory() as scratch:
         source, made = Path(scratch, "source"), Path(scratch, "made")

@@ -42,6 +42,8 @@ def array(value, shape, name="the result", wanted=None):
         raise Wrong(said, nudge=True, about=about)
     it = f"is {text_of(value, repr, 40)}" if made is None else f"holds {_amount(made.shape)}"
     end = ": is a `return` missing?" if value is None and start != name else "."
+    if isinstance(value, types.FunctionType):
+        it, end = "is a function", ": are the brackets of a call missing?"
     other = made is not None and not wanted and 0 < made.ndim == len(shape)  # numbers, but so many more or fewer
     raise Wrong(f"{start} should be {wanted or _amount(shape)}; it {it}{end}", nudge=other)
 
@@ -56,7 +58,7 @@ def numeric(value):
         made = np.asarray(value)
         strange = made.dtype.kind in "USbc" or (made.dtype.kind == "O" and None in made)
         return None if strange else made.astype(float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         return None
 
 
@@ -83,7 +85,7 @@ def digits(got):
     if isinstance(got, Words):
         return str(got)
     values = numeric(got)
-    if values is None:
+    if values is None or not values.size:
         return text_of(got, repr, 40)
     return ", ".join(f"{x:.6g}" for x in values.flat[:4]) + (", …" if values.size > 4 else "")
 
@@ -105,7 +107,7 @@ def repeatable(function, *arguments):
     if not all(map(_unchanged, arguments, copies)):
         raise Wrong("Your function changes what it is given: work on a copy.", "changes its arguments")
     again = function(*copy.deepcopy(arguments))
-    with contextlib.suppress(TypeError, ValueError):  # what is not a number is for another test to say
+    with contextlib.suppress(TypeError, ValueError, OverflowError):  # what is not a number is for another test to say
         if not np.array_equal(np.asarray(first, dtype=float), np.asarray(again, dtype=float), equal_nan=True):
             raise Wrong("Called twice with the same arguments, it gives two results.", "remembers its last call")
     return first

@@ -32,33 +32,36 @@ def limited(work, seconds):
         return work()
     timer = hasattr(signal, "setitimer")
     number = signal.SIGALRM if timer else signal.SIGTERM
-    before, tracing, armed = signal.getsignal(number), sys.gettrace(), threading.Lock()
+    before, tracing, armed, waiting = signal.getsignal(number), sys.gettrace(), [True], threading.Lock()
 
     def ring(number, frame):
-        """Throw the answer out, and follow it line by line, should it catch that."""
-        if armed.locked():
-            while frame.f_code is not limited.__code__:
-                frame.f_trace = _follow
-                frame = frame.f_back
-            sys.settrace(_follow)
+        """Throw the answer out, and from the second time on, because it catches that, follow it line by line."""
+        if armed:
+            armed.append(True)
+            if len(armed) > 2:
+                while frame.f_code is not limited.__code__:
+                    frame.f_trace = _follow
+                    frame = frame.f_back
+                sys.settrace(_follow)
             raise TimeIsUp
 
+    waiting.acquire()
     signal.signal(number, ring)
     try:
-        armed.acquire()
-        if timer:
-            signal.setitimer(signal.ITIMER_REAL, seconds, PAUSE)
-        else:
-            threading.Thread(target=_call, args=(number, seconds, armed), daemon=True).start()
         try:
+            if timer:
+                signal.setitimer(signal.ITIMER_REAL, seconds, PAUSE)
+            else:
+                threading.Thread(target=_call, args=(number, seconds, waiting), daemon=True).start()
             return work()
         finally:
             while True:
                 try:  # nothing but C from here on, until nothing is thrown any more
-                    if armed.locked():
-                        armed.release()
+                    armed.clear()  # first: from here on no alarm throws
                     if timer:
                         signal.setitimer(signal.ITIMER_REAL, 0)
+                    if waiting.locked():
+                        waiting.release()
                     sys.settrace(tracing)
                     _throw(threading.get_ident(), None)
                     break
@@ -68,8 +71,8 @@ def limited(work, seconds):
         signal.signal(number, before)
 
 
-def _call(number, seconds, armed):
-    while not armed.acquire(timeout=seconds):
+def _call(number, seconds, waiting):
+    while not waiting.acquire(timeout=seconds):
         _thread.interrupt_main(number)
         seconds = PAUSE
 

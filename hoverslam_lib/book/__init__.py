@@ -45,7 +45,10 @@ UNIT = r"(?:[%°tJ]|[kcmµ]?m|m?s|k?g|[kM]?N|rad)(?:/(?:s|m|kg)[²³]?)?(?![\w/]
 
 FORMULA = r'<span class="math notranslate nohighlight">[^<]*</span>'
 
-NO_PROSE = rf"(?s)({FORMULA}|<(?:pre|code|script|style|title)\b.*?</(?:pre|code|script|style|title)>|<[^>]*>)"
+NO_TEXT = rf"{FORMULA}|<(?:script|style|title)\b.*?</(?:script|style|title)>|<[^>]*>"
+
+NO_PROSE = rf"<(?:pre|code)\b.*?</(?:pre|code)>|{NO_TEXT}"
+
 
 GOES_ON = r"\n\n(?=##|\*\*(?:Predict|Further reading|Next)\b)"
 """Where a text that takes a prediction up ends, and the lesson goes on."""
@@ -280,12 +283,15 @@ def _with_help(cells, withhold_solutions):
 
 def _unbroken(page):
     """A page whose lines end neither between a number or a formula and what belongs to it, nor inside a number."""
-    whole = r'<span class="unbroken">\g<0></span>'
-    apart = re.split(NO_PROSE, page)
-    for n in range(0, len(apart), 2):  # the prose
-        apart[n] = re.sub(rf"(?<=\d) (?={UNIT}|\d{{3}}\b)", "&#160;", apart[n])
-        apart[n] = re.sub(r"\b\d[\d.]*e-\d+", whole, apart[n])
-    return re.sub(rf"[(“]*{FORMULA}(?: {UNIT})?[)”.,;:?!]*", whole, "".join(apart))
+    whole = '<span class="unbroken">{}</span>'
+    page = _put(page, rf"(?<=\d) (?={UNIT}|\d{{3}}\b)", "&#160;", NO_PROSE)
+    page = _put(page, r"\b\d[\d.]*e-\d+", whole, NO_TEXT)
+    return re.sub(rf"[(“]*{FORMULA}(?: {UNIT})?[)”.,;:?!]*", lambda found: whole.format(found[0]), page)
+
+
+def _put(page, pattern, text, kept):
+    """Put a text in the place of what matches a pattern, which it may name {}, outside of what is kept."""
+    return re.sub(rf"(?s)({kept})|{pattern}", lambda found: found[1] or text.format(found[0]), page)
 
 
 def _with_stills(text, folder):

@@ -54,12 +54,11 @@ window.hoverslam = { recordings: {} };
         if (landmarks.length) parts.push(make("div", { class: "landmarks" }, ...landmarks));
         const kept = recorded.kept.length ? [`Kept here: ${recorded.kept.join(", ")}.`] : [];
         kept.push("Here only some places are recorded; the notebook has all, and every control that is named and not here.");
-        parts.push(make("p", { class: "kept" }, kept.join(" ")));
         figure.querySelector(".hoverslam-controls").replaceChildren(...parts);
 
         const scroll = make("div", { class: "scroll", tabindex: "0", role: "group", "aria-label": "figure" }, picture);
         const hint = make("p", { class: "hint" }, "← The picture is wider than the page: swipe it for the rest. →");
-        still.replaceWith(scroll, hint);
+        still.replaceWith(scroll, hint, make("p", { class: "kept" }, kept.join(" ")));
         new ResizeObserver(() => { hint.hidden = scroll.scrollWidth <= scroll.clientWidth; }).observe(scroll);
         show();
     }

@@ -72,7 +72,9 @@ window.hoverslam = { recordings: {} };
         for (let n = 3; n < now.data.length; n += 4)
             if ([0, 1, 2, 3].some(k => Math.abs(before.data[n - k] - now.data[n - k]) > 64)) changed.push(((n >> 2) % now.width) / now.width);
         if (!changed.length) return;
-        const [left, right] = [Math.min, Math.max].map(end => changed.reduce((one, other) => end(one, other)) * scroll.scrollWidth);
+        changed.sort((one, other) => one - other);
+        // a few pixels far off have only got another of the layer's few colours
+        const [left, right] = [0.05, 0.95].map(share => changed[Math.round(share * (changed.length - 1))] * scroll.scrollWidth);
         if (right - left > room) return;
         if (left < scroll.scrollLeft || right > scroll.scrollLeft + room) scroll.scrollLeft = (left + right - room) / 2;
     }

@@ -40,6 +40,16 @@ PARTS = {"The methods": "0[0-5]", "The booster": "0[6-9]|1[01]", "Beyond the pap
 WITHOUT_PYTHON = """*Without Python:* write your guess down where it says **Predict**, then unfold the answer below it;
 move the figures; do the exercises on paper, with the hints that are folded under them."""
 
+UNIT = r"(?:[%°tJ]|[kcmµ]?m|m?s|k?g|[kM]?N|rad)(?:/(?:s|m|kg)[²³]?)?(?![\w/])"
+"""What stands behind a number and a space."""
+
+FORMULA = r'<span class="math notranslate nohighlight">[^<]*</span>'
+
+NO_TEXT = rf"{FORMULA}|<(?:script|style|title)\b.*?</(?:script|style|title)>|<[^>]*>"
+
+NO_PROSE = rf"<(?:pre|code)\b.*?</(?:pre|code)>|{NO_TEXT}"
+
+
 GOES_ON = r"\n\n(?=##|\*\*(?:Predict|Further reading|Next)\b)"
 """Where a text that takes a prediction up ends, and the lesson goes on."""
 
@@ -84,7 +94,8 @@ def build(paths, folder, *, for_students=False, unfold=False, withhold_solutions
         if told.returncode:
             raise ValueError(f"Sphinx cannot make the book:\n{told.stderr.strip()}")
         for page in made.glob("*.html"):
-            _put_stills(page)
+            text = page.read_text(encoding="utf-8")
+            page.write_text(_with_stills(_unbroken(text), made), encoding="utf-8")
         (made / "recordings").mkdir()
         for name, kept in names.items():
             shutil.copyfile(kept, made / "recordings" / f"{name}.js")
@@ -271,15 +282,26 @@ def _with_help(cells, withhold_solutions):
             yield nbformat.v4.new_markdown_cell("\n\n".join(folded))
 
 
-def _put_stills(page):
-    """Put beside each film of a page its last picture, hidden until the film is stopped."""
+def _unbroken(page):
+    """A page whose lines end neither between a number or a formula and what belongs to it, nor inside a number."""
+    whole = '<span class="unbroken">{}</span>'
+    page = _put(page, rf"(?<=\d) (?={UNIT}|\d{{3}}\b)", "&#160;", NO_PROSE)
+    page = _put(page, r"\b\d[\d.]*e-\d+", whole, NO_TEXT)
+    return re.sub(rf"[(“]*{FORMULA}(?: {UNIT})?[)”.,;:?!]*", lambda found: whole.format(found[0]), page)
+
+
+def _put(page, pattern, text, kept):
+    """Put a text in the place of what matches a pattern, which it may name {}, outside of what is kept."""
+    return re.sub(rf"(?s)({kept})|{pattern}", lambda found: found[1] or text.format(found[0]), page)
+
+
+def _with_stills(text, folder):
+    """A page with the last picture beside each of its films, hidden until the film is stopped."""
 
     def beside(film):
         source = re.search(r'src="(.*?)(?:#\d+)?"', film[0])[1]
         data = (
-            base64.b64decode(source.partition(",")[2])
-            if source.startswith("data:")
-            else (page.parent / source).read_bytes()
+            base64.b64decode(source.partition(",")[2]) if source.startswith("data:") else (folder / source).read_bytes()
         )
         with Image.open(io.BytesIO(data)) as frames:
             frames.seek(frames.n_frames - 1)
@@ -288,8 +310,7 @@ def _put_stills(page):
         picture = f"data:image/png;base64,{base64.b64encode(last.getvalue()).decode('ascii')}"
         return film[0] + film[0].replace(source, picture).replace("<img ", '<img class="still" hidden ', 1)
 
-    text = page.read_text(encoding="utf-8")
-    page.write_text(re.sub(r'<img [^>]*src="(?:data:image/gif|[^"]*\.gif")[^>]*>', beside, text), encoding="utf-8")
+    return re.sub(r'<img [^>]*src="(?:data:image/gif|[^"]*\.gif")[^>]*>', beside, text)
 
 
 def prediction_sheet(paths):

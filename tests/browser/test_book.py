@@ -194,6 +194,40 @@ def test_answers_are_folded_until_asked_for_with_the_text_that_takes_them_up(pag
     assert page.locator("article details[open]").count() == 1
 
 
+TORN = r"""() => {
+    const torn = [], top = range => range.getClientRects()[0].top;
+    const part = (text, from, to) => {
+        const range = document.createRange();
+        range.setStart(text, from);
+        range.setEnd(text, to);
+        return range;
+    };
+    const texts = document.createTreeWalker(document.querySelector("article"), NodeFilter.SHOW_TEXT);
+    while (texts.nextNode()) {
+        const text = texts.currentNode;
+        const own = text.parentElement;
+        if (!own.checkVisibility() || own.closest("pre, code, mjx-container, [role=status]")) continue;
+        const numbers = /\d[ \u00a0](?:%|k?m|m?s|kg|t|m\/s²?)(?![\w\/])|\de-\d+/g;
+        for (const found of text.textContent.matchAll(numbers)) {
+            const [first, last] = [found.index, found.index + found[0].length - 1];
+            if (top(part(text, last, last + 1)) > top(part(text, first, first + 1)) + 6) torn.push(found[0]);
+        }
+        const formula = text.previousSibling?.querySelector?.("mjx-container:not([display])");
+        if (!formula || !/^[).,;:?!]/.test(text.textContent)) continue;
+        if (top(part(text, 0, 1)) > formula.getBoundingClientRect().bottom) torn.push(formula.textContent);
+    }
+    return torn;
+}"""
+
+
+def test_no_line_ends_inside_a_number_or_before_what_belongs_to_it(page, made):
+    for path in sorted(made.glob("[01]*.html")):
+        page.goto(path.as_uri())
+        page.evaluate("document.querySelectorAll('details').forEach(part => part.open = true)")
+        page.evaluate("async () => await MathJax.startup.promise")
+        assert page.evaluate(TORN) == [], path.name
+
+
 @pytest.fixture(params=["light", "dark"])
 def paper(chromium, request):
     """A page as it is printed: A4 within its margins."""
@@ -444,6 +478,7 @@ def test_films_stand_still_for_who_wants_less_motion(chromium, made):
     page = chromium.new_page(reduced_motion="reduce")
     for name in ("index", "00_start_here", "10_animations"):
         page.goto((made / f"{name}.html").as_uri())
+        page.evaluate("document.querySelectorAll('details').forEach(part => part.open = true)")
         assert page.locator("img.still").count() >= 1
         assert all(still.is_visible() for still in page.locator("img.still").all())
         assert not any(film.is_visible() for film in page.locator("img:has(+ .still)").all())

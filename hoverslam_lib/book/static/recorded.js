@@ -54,12 +54,11 @@ window.hoverslam = { recordings: {} };
         if (landmarks.length) parts.push(make("div", { class: "landmarks" }, ...landmarks));
         const kept = recorded.kept.length ? [`Kept here: ${recorded.kept.join(", ")}.`] : [];
         kept.push("Here only some places are recorded; the notebook has all, and every control that is named and not here.");
-        parts.push(make("p", { class: "kept" }, kept.join(" ")));
         figure.querySelector(".hoverslam-controls").replaceChildren(...parts);
 
         const scroll = make("div", { class: "scroll", tabindex: "0", role: "group", "aria-label": "figure" }, picture);
         const hint = make("p", { class: "hint" }, "← The picture is wider than the page: swipe it for the rest. →");
-        still.replaceWith(scroll, hint);
+        still.replaceWith(scroll, hint, make("p", { class: "kept" }, kept.join(" ")));
         new ResizeObserver(() => { hint.hidden = scroll.scrollWidth <= scroll.clientWidth; }).observe(scroll);
         show();
     }
@@ -73,7 +72,9 @@ window.hoverslam = { recordings: {} };
         for (let n = 3; n < now.data.length; n += 4)
             if ([0, 1, 2, 3].some(k => Math.abs(before.data[n - k] - now.data[n - k]) > 64)) changed.push(((n >> 2) % now.width) / now.width);
         if (!changed.length) return;
-        const [left, right] = [Math.min, Math.max].map(end => changed.reduce((one, other) => end(one, other)) * scroll.scrollWidth);
+        changed.sort((one, other) => one - other);
+        // a few pixels far off have only got another of the layer's few colours
+        const [left, right] = [0.05, 0.95].map(share => changed[Math.round(share * (changed.length - 1))] * scroll.scrollWidth);
         if (right - left > room) return;
         if (left < scroll.scrollLeft || right > scroll.scrollLeft + room) scroll.scrollLeft = (left + right - room) / 2;
     }

@@ -10,6 +10,7 @@ import math
 import sys
 import time
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -27,6 +28,7 @@ from hoverslam_lib.descent import (
     coast,
     never_comes_down,
     speed_after_fall,
+    walk,
 )
 from hoverslam_lib.ignition import deepest
 from hoverslam_lib.integrators import step_function
@@ -373,7 +375,7 @@ class _Fall:
     """The nodes of the one fall that flights begin with which differ in their ignition alone."""
 
     def __init__(self, descent, t_end, solver):
-        nodes, end = coast(descent, t_end, dt=solver.dt, step=solver.method)
+        nodes, end = coast(descent, t_end, partial(walk, solver.method, dt=solver.dt))
         if end == "space":
             raise never_comes_down(*nodes[-1][1:])
         self._nodes = np.array(nodes).T

@@ -4,19 +4,22 @@ import math
 from bisect import bisect_right
 from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from operator import itemgetter
 
 import numpy as np
 
 from hoverslam_lib import _validate
 from hoverslam_lib._roots import bracketed_root
-from hoverslam_lib.descent import Descent, StepTooLargeError, coast, finish, fly, require_one_descent, walk
-from hoverslam_lib.integrators import dop8, rk4, step_function
+from hoverslam_lib.descent import Descent, coast, finish, fly, require_one_descent, stride, walk
+from hoverslam_lib.integrators import dop8, step_function
 from hoverslam_lib.trajectory import rounding
 
 NEAR_ZERO = 1e-6
 """A hover no further from the ground than this share of the height at the start is taken for one at the ground."""
+
+TRIES = 80_000
+"""Steps that the search for the best ignition may try, of twelve evaluations of the forces each."""
 
 
 class NoSoftLanding(ValueError):
@@ -96,14 +99,15 @@ def hover_height(descent, t_ignite, *, dt=0.02, method="rk4"):
     _validate.step_count(min(t_ignite, descent.shortest_fall()), dt)
     step = step_function(method)
     _require_thrust(descent)
-    nodes, end = coast(descent, t_ignite, dt=dt, step=step)
-    return math.nan if end == "ground" else _hover_height(descent, *nodes[-1], dt=dt, step=step)
+    march = partial(walk, step, dt=dt)
+    nodes, end = coast(descent, t_ignite, march)
+    return math.nan if end == "ground" else _hover_height(descent, *nodes[-1], march)
 
 
-def _hover_height(descent, t, h, v, *, dt, step):
+def _hover_height(descent, t, h, v, march):
     hardest = (descent.booster.thrust + abs(descent.drag(h, v))) / descent.booster.dry_mass
-    _validate.step_count(abs(v) / hardest, dt)
-    return _stop(descent, t, h, v, dt=dt, step=step)[1]
+    _validate.step_count(abs(v) / hardest, march.keywords["dt"])
+    return _stop(descent, t, h, v, march)[1]
 
 
 class FreeFall:
@@ -126,6 +130,7 @@ class FreeFall:
     def __init__(self, descent, *, dt=0.02, method="rk4"):
         self.flight = fly(descent, None, dt=dt, method=method)
         self.descent, self._dt, self._step = descent, float(dt), step_function(method)
+        self._march = partial(walk, self._step, dt=self._dt)
         self._nodes = np.stack([self.flight.t, self.flight.h, self.flight.v], axis=1)
 
     def fly(self, t_ignite, controller=None):
@@ -136,11 +141,7 @@ class FreeFall:
         """Return the height [m] that `hover_height` returns."""
         _require_thrust(self.descent)
         nodes, end = self._until(t_ignite)
-        return (
-            math.nan
-            if end == "ground"
-            else _hover_height(self.descent, *nodes[-1].tolist(), dt=self._dt, step=self._step)
-        )
+        return math.nan if end == "ground" else _hover_height(self.descent, *nodes[-1].tolist(), self._march)
 
     def _until(self, t_ignite):
         """What `coast` returns: the last step before t_ignite is taken anew, to end on it."""
@@ -150,7 +151,7 @@ class FreeFall:
             return self._nodes, "ground"
         before = max(i - 1, 0)
         start = tuple(self._nodes[before].tolist())
-        last, end = coast(self.descent, t_ignite, dt=self._dt, step=self._step, start=start)
+        last, end = coast(self.descent, t_ignite, self._march, start)
         return np.concatenate([self._nodes[:before], last]), end
 
 
@@ -176,23 +177,14 @@ def best_ignition(descent):
     """
     require_one_descent(descent)
     _require_thrust(descent)
-    found = None
-    for n in range(14):
-        before = found
-        try:
-            found = _solve(descent, rk4, 0.5) if n == 0 else _solve(descent, dop8, 0.5**n, near=before)
-        except (StepTooLargeError, OverflowError):
-            continue
-        except NoSoftLanding:
-            if n < 2:  # look more closely before believing it
-                continue
-            raise
-        # order 8: the error left is some hundred times smaller than this change
-        if n > 1 and before and abs(found.t_ignite - before.t_ignite) <= 1e-10 * found.t_touchdown:
-            break
-    else:
-        raise ArithmeticError("the ignition time does not settle down, however small the steps are made")
-
+    tries = iter(range(TRIES))
+    coarse, fine = partial(stride, 1e-5, tries), partial(stride, 1e-12, tries)
+    nodes = _whole_fall(descent, fine)
+    try:
+        near = _solve(descent, nodes, coarse)
+    except NoSoftLanding:  # look more closely before believing it
+        near = None
+    found = _solve(descent, nodes, fine, near)
     if found.propellant_left < -1e-9 * descent.booster.propellant_mass:
         missing = -found.propellant_left
         burn_time = found.t_touchdown - found.t_ignite
@@ -259,56 +251,36 @@ def _require_thrust(descent):
         )
 
 
-def _first_dt(descent):
-    """A step of the fall to begin with [s]: a small part of it, and of the time in which the air changes."""
-    g, v = descent.planet.gravity(0.0), descent.velocity
-    fastest = math.sqrt(v**2 + 2 * g * descent.height)
-    fall = 2 * descent.height / (fastest - v) if v < 0 else (v + fastest) / g
-    return min(fall / 24, descent.planet.scale_height / fastest) if descent.planet.surface_density else fall / 24
-
-
-def _first_dt_of_burn(descent, h, v):
-    """The same for a burn from (h, v), which may be much shorter or longer than the fall before it."""
-    braking = descent.acceleration(throttle=1.0)(0.0, h, 0.0)
-    if not v < 0 < braking:
-        return _first_dt(descent)
-    air = descent.planet.scale_height / -v if descent.planet.surface_density else math.inf
-    drag = descent.drag(h, v)  # alone it would stop the booster within some m·v/drag
-    damping = -descent.booster.initial_mass * v / drag if drag else math.inf
-    orbit = math.sqrt((descent.planet.radius + h) / descent.planet.gravity(h))  # a radian of it: gravity changes
-    return min(-v / braking / 4, air, damping, orbit / 4)
-
-
-def _solve(descent, step, fraction, near=None):
-    """The optimum as a method sees it with a fraction of the first step."""
-    dt = fraction * _first_dt(descent)
-    nodes, end = coast(descent, math.inf, dt=dt, step=step)
-    t_end = nodes[-1][0]
+def _whole_fall(descent, march):
+    nodes, end = coast(descent, math.inf, march)
     if end == "space":
         h = descent.height
         excess = descent.velocity - math.sqrt(2 * descent.planet.gravity(h) * (descent.planet.radius + h))
         above = _validate.digits(excess)
         raise NoSoftLanding("never comes down", excess, f"the booster never comes down: {above} m/s above escape speed")
+    return nodes
+
+
+def _solve(descent, nodes, march, near=None):
+    """The optimum, given the fall and a way to take the steps of a burn; and, if it is known, an optimum near it."""
+    t_end, close = nodes[-1][0], 1e-13 if near else 1e-6
     f = descent.acceleration()
 
     @cache
     def lit(t_ignite):
         """State at ignition, with one partial step from the stored fall, and where a burn from there stops."""
         t, h, v = nodes[bisect_right(nodes, t_ignite, key=itemgetter(0)) - 1]
-        h, v = step(f, t, h, v, t_ignite - t)
-        return h, v, *_stop(descent, t_ignite, h, v, dt=fraction * _first_dt_of_burn(descent, h, v), step=step)
+        h, v = dop8(f, t, h, v, t_ignite - t)
+        return h, v, *_stop(descent, t_ignite, h, v, march)
 
     def missed_by(t_ignite):
-        return lit(t_ignite)[-1]
+        h = lit(t_ignite)[-1]
+        return 0.0 if abs(h) < close * descent.height else h
 
-    bracket = None
-    if near is not None:
-        low, high = max(near.t_ignite - 1e-5 * t_end, 0.0), min(near.t_ignite + 1e-5 * t_end, t_end)
-        bracket = low, high, missed_by(low), missed_by(high)
-    if bracket is None or not bracket[2] >= 0 >= bracket[3]:
-        bracket = _bracket(missed_by, nodes, deepest(descent.planet))
-    t_ignite = bracketed_root(missed_by, *bracket, xtol=(1e-6 if near is None else 1e-12) * t_end)
-    if near is not None and abs(missed_by(t_ignite)) > NEAR_ZERO * descent.height:  # steep, or no root but a jump
+    bracket = _near(lit, near.t_ignite, t_end) if near else None
+    bracket = bracket or _bracket(missed_by, nodes, deepest(descent.planet))
+    t_ignite = bracketed_root(missed_by, *bracket, xtol=close * t_end)
+    if near and abs(missed_by(t_ignite)) > NEAR_ZERO * descent.height:  # steep, or no root but a jump
         t_ignite = bracketed_root(missed_by, *bracket)
         if abs(missed_by(t_ignite)) > NEAR_ZERO * descent.height:
             # next to the jump rounding decides on which side a burn ends
@@ -329,12 +301,19 @@ def _too_weak(t_ignite, height):
     )
 
 
+def _near(lit, t, t_end):
+    """A narrow bracket, with t near one end."""
+    _, v, _, g = lit(t)
+    other = min(max(t - 20 * g / v, 0.0), t_end)
+    g_other = lit(other)[-1]
+    return (t, other, g, g_other) if g * g_other <= 0 else None
+
+
 def _bracket(missed_by, nodes, deepest):
     """Two ignition times between which the hover height changes sign, and the hover heights there."""
     high, g_high = nodes[-1][0], missed_by(nodes[-1][0])
-    top = next(i for i, (_, _, v) in enumerate(nodes) if v <= 0)
-    for i in sorted({top * k // 8 for k in range(9)}, reverse=True):  # back from the top, through an ascent if any
-        t = nodes[i][0]
+    t_top = next(t for t, _, v in nodes if v <= 0)
+    for t in sorted({t_top * k / 8 for k in range(9)}, reverse=True):  # back from the top, through an ascent if any
         g = missed_by(t)
         if g >= 0:
             return t, high, g, g_high
@@ -355,16 +334,15 @@ def deepest(planet):
     return with_air if planet.surface_density else without
 
 
-def _stop(descent, t, h, v, *, dt, step):
+def _stop(descent, t, h, v, march):
     """When and where a full burn from (t, h, v) comes to rest, the ground ignored: (t, h). See `hover_height`."""
     floor, t_empty = deepest(descent.planet), t + descent.booster.burn_duration
     burning, dry = descent.acceleration(throttle=1.0, since=t), descent.acceleration_when_dry()
     for f, t_end in ((burning, t_empty), (dry, math.inf)):
-        start = t, h, v
-        for t, h, v, event in walk(step, f, start, t_end, dt=dt, ground=-math.inf):  # noqa: B007 (v counts below)
+        for t, h, v, event in march(f, (t, h, v), t_end, ground=-math.inf):  # noqa: B020
             if event == "stop":
                 return t, h
+            if v > 0 and f(t, h, 0.0) > 0:  # it climbs and thrust outweighs it, ever more so
+                return math.inf, math.inf
             if h < floor:
                 return t, -math.inf
-        if v > 0:
-            return math.inf, math.inf  # dry and climbing with thrust above weight

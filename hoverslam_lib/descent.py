@@ -96,7 +96,7 @@ class Descent:
         thrust, rate = throttle * self.booster.thrust, throttle * self.booster.burn_rate
         mass = self.booster.initial_mass if mass is None else mass
         # this is where a flight spends its time: drag is written out, and what does not change is looked up once
-        drag_area, density, gravity = self._drag_area, self.planet.air_density, self.planet.gravity
+        drag_area, density, gravity = self._drag_area, self.planet.air_density_law(), self.planet.gravity
 
         def coasting(t, h, v):
             return -drag_area * density(h) * abs(v) * v / mass - gravity(h)
@@ -108,8 +108,9 @@ class Descent:
 
     def acceleration_when_dry(self):
         """Return f(t, h, v) [m/s²] at full thrust and at the dry mass, which stays: see `hover_height`."""
-        thrust, drag, dry_mass, gravity = self.booster.thrust, self.drag, self.booster.dry_mass, self.planet.gravity
-        return lambda t, h, v: (thrust + drag(h, v)) / dry_mass - gravity(h)
+        thrust, mass, drag_area = self.booster.thrust, self.booster.dry_mass, self._drag_area
+        density, gravity = self.planet.air_density_law(), self.planet.gravity
+        return lambda t, h, v: (thrust - drag_area * density(h) * abs(v) * v) / mass - gravity(h)
 
     @cached_property
     def _drag_area(self):
@@ -166,6 +167,14 @@ def speed_after_fall(planet, h, v=0.0):
 
 class StepTooLargeError(ValueError):
     """A step is so large that its numbers overflow, or that it ends on the ground going up."""
+
+
+class TooManyStepsError(ValueError):
+    """A walk does not end within the steps that it was given; `.node` is how far it has come."""
+
+    def __init__(self, node):
+        super().__init__("too many steps: t = {:g} s, h = {:g} m, v = {:g} m/s".format(*node))
+        self.node = node
 
 
 LANDING_BURN = Descent(FALCON_9_LANDING_BURN, EARTH, height=10e3, velocity=-350.0)
@@ -418,7 +427,12 @@ def stride(tolerance, tries, f, start, t_end, *, ground=0.0):
     """Do what `walk` does, by `dop8`, in steps that choose their own length.
 
     The error of each step is estimated to be at most `tolerance`, as a share of the largest h and v so far (or 1 m and
-    1 m/s). Each step that is tried takes one of `tries`, an iterator; with the last of them the walk ends where it is.
+    1 m/s). Each step that is tried takes one of `tries`, an iterator.
+
+    Raises
+    ------
+    TooManyStepsError
+        If there are no more tries.
     """
     t, h, v = start
     a, h_most, v_most = f(t, h, v), 1.0, 1.0
@@ -442,6 +456,7 @@ def stride(tolerance, tries, f, start, t_end, *, ground=0.0):
             if t == t_end:
                 return
         dt *= max(0.2, 0.8 * max(error, 1e-4) ** (-1 / 8))  # as it is proportional to dt⁸; 2.5 times as long at most
+    raise TooManyStepsError((t, h, v))
 
 
 def _turn(f, t, h, v, dt, v_end):

@@ -30,7 +30,6 @@ from hoverslam_lib.descent import (
     speed_after_fall,
     walk,
 )
-from hoverslam_lib.ignition import deepest
 from hoverslam_lib.integrators import step_function
 
 BLOCK = 16_384
@@ -412,7 +411,7 @@ def _burn(descent, lanes, t, h, v, solver, table):
     """Burn at full thrust: the hover height, and what becomes of the flight on the way there."""
     n, booster = len(lanes), descent.booster
     strong = _column(booster.thrust, n) > descent.weight(0.0, booster.dry_mass)
-    floor = np.where(strong, deepest(descent.planet), 0.0)  # without a hover height, the ground ends it
+    floor = np.where(strong, descent.planet.deepest, 0.0)  # without a hover height, the ground ends it
     phase = _burning, descent, lanes, h, v, _column(booster.burn_duration, n), floor
     ends = _March(*phase, solver, stops=True).run()
     table.height[lanes[strong]] = _hover_heights(descent, lanes, ends, floor, solver)[strong]

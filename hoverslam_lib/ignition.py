@@ -278,7 +278,7 @@ def _solve(descent, nodes, march, near=None):
         return 0.0 if abs(h) < close * descent.height else h
 
     bracket = _near(lit, near.t_ignite, t_end) if near else None
-    bracket = bracket or _bracket(missed_by, nodes, deepest(descent.planet))
+    bracket = bracket or _bracket(missed_by, nodes, descent.planet.deepest)
     t_ignite = bracketed_root(missed_by, *bracket, xtol=close * t_end)
     if near and abs(missed_by(t_ignite)) > NEAR_ZERO * descent.height:  # steep, or no root but a jump
         t_ignite = bracketed_root(missed_by, *bracket)
@@ -326,17 +326,9 @@ def _bracket(missed_by, nodes, deepest):
     )
 
 
-def deepest(planet):
-    """How far the air, or the planet where there is none, can be continued below the ground [m], negative."""
-    with_air, without = -2 * planet.scale_height, -planet.radius / 2
-    if _validate.is_column(planet.surface_density):
-        return np.where(planet.surface_density > 0, with_air, without)
-    return with_air if planet.surface_density else without
-
-
 def _stop(descent, t, h, v, march):
     """When and where a full burn from (t, h, v) comes to rest, the ground ignored: (t, h). See `hover_height`."""
-    floor, t_empty = deepest(descent.planet), t + descent.booster.burn_duration
+    floor, t_empty = descent.planet.deepest, t + descent.booster.burn_duration
     burning, dry = descent.acceleration(throttle=1.0, since=t), descent.acceleration_when_dry()
     for f, t_end in ((burning, t_empty), (dry, math.inf)):
         for t, h, v, event in march(f, (t, h, v), t_end, ground=-math.inf):  # noqa: B020

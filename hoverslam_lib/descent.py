@@ -21,6 +21,9 @@ STOPPED_TOO_HIGH, OUT_OF_PROPELLANT = "stopped too high", "out of propellant"
 OUTCOMES = (SOFT_LANDING, CRASH, STOPPED_TOO_HIGH, OUT_OF_PROPELLANT)
 """What can become of a flight."""
 
+LONG_WALK = 100_000
+"""After so many steps a walk looks ahead, with as many evaluations of the forces at most, whether it ends."""
+
 
 @dataclass(frozen=True)
 class Descent:
@@ -413,14 +416,32 @@ def walk(step, f, start, t_end, *, dt, ground=0.0):
         The start, then the end of each step, or of the parts that events divide it into [s, m, m/s].
     event : str or None
         As `advance` returns; "stop" too for a start at rest from which it does not fall.
+
+    Raises
+    ------
+    ValueError
+        If it would take more than ten million steps.
     """
     t, h, v = start
     yield t, h, v, "stop" if v == 0 and f(t, h, v) >= 0 else None
-    for t_next in time_grid(t, t_end, dt) if t_end - t > dt else (t_end,):
-        while t < t_next:
-            s, h, v, event = advance(step, f, t, h, v, t_next - t, ground=ground)
-            t = t_next if event is None else min(t + s, t_next)
-            yield t, h, v, event
+    for part_end in (min(t_end, t + LONG_WALK * dt), t_end):
+        for t_next in time_grid(t, part_end, dt) if part_end - t > dt else (part_end,):
+            while t < t_next:
+                s, h, v, event = advance(step, f, t, h, v, t_next - t, ground=ground)
+                t = t_next if event is None else min(t + s, t_next)
+                yield t, h, v, event
+        if t < t_end:
+            _look_ahead(f, (t, h, v), t_end, dt, ground)
+
+
+def _look_ahead(f, start, t_end, dt, ground):
+    """Raise at once if a walk would go on for more than ten million steps of dt."""
+    ahead = stride(1e-6, iter(range(LONG_WALK // 12)), f, start, t_end, ground=ground)
+    try:
+        t = next((t for t, _, _, event in ahead if event in ("stop", "ground")), t_end)
+    except TooManyStepsError as error:
+        t = error.node[0]
+    _validate.step_count(t - start[0], dt)
 
 
 def stride(tolerance, tries, f, start, t_end, *, ground=0.0):

@@ -1,6 +1,7 @@
 """The descent of a booster, and the flight that an ignition time makes of it."""
 
 import math
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property, partial
 
@@ -431,17 +432,16 @@ def walk(step, f, start, t_end, *, dt, ground=0.0):
                 t = t_next if event is None else min(t + s, t_next)
                 yield t, h, v, event
         if t < t_end:
-            _look_ahead(f, (t, h, v), t_end, dt, ground)
+            _validate.step_count(_end_of_walk(f, (t, h, v), t_end, ground) - start[0], dt)
 
 
-def _look_ahead(f, start, t_end, dt, ground):
-    """Raise at once if a walk would go on for more than ten million steps of dt."""
-    ahead = stride(1e-6, iter(range(LONG_WALK // 12)), f, start, t_end, ground=ground)
-    try:
-        t = next((t for t, _, _, event in ahead if event in ("stop", "ground")), t_end)
-    except TooManyStepsError as error:
-        t = error.node[0]
-    _validate.step_count(t - start[0], dt)
+def _end_of_walk(f, node, t_end, ground):
+    """When a walk ends that has come to a node, nearly; a time before that if it does not show in a few steps."""
+    with suppress(TooManyStepsError):
+        for t, _, v, event in stride(1e-6, iter(range(LONG_WALK // 12)), f, node, t_end, ground=ground):  # noqa: B007
+            if event in ("stop", "ground"):
+                break
+    return t if v <= 0 else node[0]  # it may climb for good: who walks sees that in time
 
 
 def stride(tolerance, tries, f, start, t_end, *, ground=0.0):

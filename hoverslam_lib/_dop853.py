@@ -1,8 +1,8 @@
-"""The twelve-stage, eighth-order formula of Dormand and Prince (DOP853, without its error estimators).
+"""The twelve-stage, eighth-order formula of Dormand and Prince (DOP853), and how far it is from formulas within it.
 
-Nodes C, weights B and the rows of A, stage by stage: E. Hairer, S. P. Nørsett and G. Wanner, *Solving Ordinary
-Differential Equations I*, 2nd ed., Springer 1993, section II.5. A row of A lists pairs (earlier stage, coefficient);
-coefficients that are zero are left out.
+Nodes C, weights B, their differences E5 from weights of order 5, weights B3 of order 3, and the rows of A, stage by
+stage: E. Hairer, S. P. Nørsett and G. Wanner, *Solving Ordinary Differential Equations I*, 2nd ed., Springer 1993,
+sections II.5 and II.10. A row of A lists pairs (earlier stage, coefficient); coefficients that are zero are left out.
 """
 
 C = (
@@ -29,6 +29,23 @@ B = (
     (9, -0.1521609496625161),
     (10, 0.20136540080403034),
     (11, 0.04471061572777259),
+)
+
+E5 = (
+    (0, 0.01312004499419488),
+    (5, -1.2251564463762044),
+    (6, -0.4957589496572502),
+    (7, 1.6643771824549864),
+    (8, -0.35032884874997366),
+    (9, 0.3341791187130175),
+    (10, 0.08192320648511571),
+    (11, -0.022355307863886294),
+)
+
+B3 = (
+    (0, 0.2440944881889764),
+    (8, 0.7338466882816118),
+    (11, 0.022058823529411766),
 )
 
 A = (
@@ -104,3 +121,5 @@ A = (
         (10, 0.6433927460157636),
     ),
 )
+
+STAGES = tuple(zip(C, A, strict=True))

@@ -1,15 +1,16 @@
 """The descent of a booster, and the flight that an ignition time makes of it."""
 
 import math
+from contextlib import suppress
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
 from hoverslam_lib import _columns, _validate
 from hoverslam_lib._roots import bracketed_root
 from hoverslam_lib.booster import FALCON_9, FALCON_9_LANDING_BURN, Booster
-from hoverslam_lib.integrators import step_function
+from hoverslam_lib.integrators import dop8, dop8_and_error, step_function
 from hoverslam_lib.planet import EARTH, Planet
 from hoverslam_lib.trajectory import time_grid
 
@@ -20,6 +21,9 @@ SOFT_LANDING, CRASH = "soft landing", "crash"
 STOPPED_TOO_HIGH, OUT_OF_PROPELLANT = "stopped too high", "out of propellant"
 OUTCOMES = (SOFT_LANDING, CRASH, STOPPED_TOO_HIGH, OUT_OF_PROPELLANT)
 """What can become of a flight."""
+
+LONG_WALK = 100_000
+"""After so many steps a walk looks ahead, with as many evaluations of the forces at most, whether it ends."""
 
 
 @dataclass(frozen=True)
@@ -96,7 +100,7 @@ class Descent:
         thrust, rate = throttle * self.booster.thrust, throttle * self.booster.burn_rate
         mass = self.booster.initial_mass if mass is None else mass
         # this is where a flight spends its time: drag is written out, and what does not change is looked up once
-        drag_area, density, gravity = self._drag_area, self.planet.air_density, self.planet.gravity
+        drag_area, density, gravity = self._drag_area, self.planet.air_density_law(), self.planet.gravity
 
         def coasting(t, h, v):
             return -drag_area * density(h) * abs(v) * v / mass - gravity(h)
@@ -108,8 +112,9 @@ class Descent:
 
     def acceleration_when_dry(self):
         """Return f(t, h, v) [m/s²] at full thrust and at the dry mass, which stays: see `hover_height`."""
-        thrust, drag, dry_mass, gravity = self.booster.thrust, self.drag, self.booster.dry_mass, self.planet.gravity
-        return lambda t, h, v: (thrust + drag(h, v)) / dry_mass - gravity(h)
+        thrust, mass, drag_area = self.booster.thrust, self.booster.dry_mass, self._drag_area
+        density, gravity = self.planet.air_density_law(), self.planet.gravity
+        return lambda t, h, v: (thrust - drag_area * density(h) * abs(v) * v) / mass - gravity(h)
 
     @cached_property
     def _drag_area(self):
@@ -166,6 +171,14 @@ def speed_after_fall(planet, h, v=0.0):
 
 class StepTooLargeError(ValueError):
     """A step is so large that its numbers overflow, or that it ends on the ground going up."""
+
+
+class TooManyStepsError(ValueError):
+    """A walk does not end within the steps that it was given; `.node` is how far it has come."""
+
+    def __init__(self, node):
+        super().__init__("too many steps: t = {:g} s, h = {:g} m, v = {:g} m/s".format(*node))
+        self.node = node
 
 
 LANDING_BURN = Descent(FALCON_9_LANDING_BURN, EARTH, height=10e3, velocity=-350.0)
@@ -292,7 +305,7 @@ def fly(descent, t_ignite, *, dt=0.02, method="rk4", controller=None):
     if at_least < math.inf:
         _validate.step_count(at_least, dt)
     step = step_function(method)
-    coasted, end = coast(descent, t_coast, dt=dt, step=step)
+    coasted, end = coast(descent, t_coast, partial(walk, step, dt=dt))
     if end == "space":
         raise never_comes_down(*coasted[-1][1:])
     return finish(descent, t_ignite, np.array(coasted), end, controller, dt=dt, step=step)
@@ -332,8 +345,10 @@ def finish(descent, t_ignite, coasted, end, controller=None, *, dt, step):
     return Flight(descent, t_ignite, t, h, v, mass, throttle, outcome, touchdown, hover)
 
 
-def coast(descent, t_end, *, dt, step, start=None):
+def coast(descent, t_end, march, start=None):
     """Fall freely to t_end or to the ground, whichever comes first; `start` is a node to begin at.
+
+    ``march(f, start, t_end)`` takes the steps: `walk` with its method and dt, or `stride`.
 
     Returns
     -------
@@ -344,7 +359,7 @@ def coast(descent, t_end, *, dt, step, start=None):
     """
     f, nodes = descent.acceleration(), []
     start = start or (0.0, float(descent.height), float(descent.velocity))
-    for t, h, v, event in walk(step, f, start, t_end, dt=dt):
+    for t, h, v, event in march(f, start, t_end):
         if nodes and t == nodes[-1][0]:  # the step was shorter than the last digit of t
             nodes.pop()
         nodes.append((t, h, v))
@@ -402,18 +417,83 @@ def walk(step, f, start, t_end, *, dt, ground=0.0):
         The start, then the end of each step, or of the parts that events divide it into [s, m, m/s].
     event : str or None
         As `advance` returns; "stop" too for a start at rest from which it does not fall.
+
+    Raises
+    ------
+    ValueError
+        If it would take more than ten million steps.
     """
     t, h, v = start
     yield t, h, v, "stop" if v == 0 and f(t, h, v) >= 0 else None
-    for t_next in time_grid(t, t_end, dt) if t_end - t > dt else (t_end,):
-        while t < t_next:
-            s, h, v, event = advance(step, f, t, h, v, t_next - t, ground=ground)
-            t = t_next if event is None else min(t + s, t_next)
+    for part_end in (min(t_end, t + LONG_WALK * dt), t_end):
+        for t_next in time_grid(t, part_end, dt) if part_end - t > dt else (part_end,):
+            while t < t_next:
+                s, h, v, event = advance(step, f, t, h, v, t_next - t, ground=ground)
+                t = t_next if event is None else min(t + s, t_next)
+                yield t, h, v, event
+        if t < t_end:
+            _validate.step_count(_end_of_walk(f, (t, h, v), t_end, ground) - start[0], dt)
+
+
+def _end_of_walk(f, node, t_end, ground):
+    """When a walk ends that has come to a node, nearly; a time before that if it does not show in a few steps."""
+    with suppress(TooManyStepsError):
+        for t, _, v, event in stride(1e-6, iter(range(LONG_WALK // 12)), f, node, t_end, ground=ground):  # noqa: B007
+            if event in ("stop", "ground"):
+                break
+    return t if v <= 0 else node[0]  # it may climb for good: who walks sees that in time
+
+
+def stride(tolerance, tries, f, start, t_end, *, ground=0.0):
+    """Do what `walk` does, by `dop8`, in steps that choose their own length.
+
+    The error of each step is estimated to be at most `tolerance`, as a share of the largest h and v so far (or 1 m and
+    1 m/s). Each step that is tried takes one of `tries`, an iterator.
+
+    Raises
+    ------
+    TooManyStepsError
+        If there are no more tries.
+    """
+    t, h, v = start
+    a, h_most, v_most = f(t, h, v), 1.0, 1.0
+    yield t, h, v, "stop" if v == 0 <= a else None
+    dt = (1 + abs(v)) / (1e-9 + 4 * abs(a))  # v changes by a sixteenth
+    for _ in tries:
+        dt, h_most, v_most = min(dt, t_end - t), max(h_most, abs(h)), max(v_most, abs(v))
+        try:
+            h_end, v_end, h_error, v_error = dop8_and_error(f, t, h, v, dt)
+            if v < 0 <= v_end or v > 0 >= v_end:  # drag, ∝ |v|·v, is not smooth there: the step must end on it
+                dt = _turn(f, t, h, v, dt, v_end)
+                h_end, v_end, h_error, v_error = dop8_and_error(f, t, h, v, dt)
+                v_end = 0.0
+            error = max(h_error / h_most, v_error / v_most) / tolerance
+        except ArithmeticError:
+            error = math.inf
+        if error <= 1:
+            s, h, v, event = advance(dop8, f, t, h, v, dt, ground=ground, end=(h_end, v_end))
+            t = t_end if s == t_end - t else t + s
             yield t, h, v, event
+            if t == t_end:
+                return
+        dt *= max(0.2, 0.8 * max(error, 1e-4) ** (-1 / 8))  # as it is proportional to dt⁸; 2.5 times as long at most
+    raise TooManyStepsError((t, h, v))
 
 
-def advance(step, f, t, h, v, dt, *, ground=0.0):
-    """Take one step of dt, or the part of it up to the first event.
+def _turn(f, t, h, v, dt, v_end):
+    """How long after the start of a step of `dop8` v is 0 [s]: by Newton's method, or by a safe one if that fails."""
+    s = dt * v / (v - v_end)
+    for _ in range(6):
+        h_s, v_s = dop8(f, t, h, v, s)
+        correction = v_s / f(t + s, h_s, v_s)
+        s -= correction
+        if abs(correction) < 1e-8 * dt and 0 < s <= dt:  # the next would be its square
+            return s
+    return bracketed_root(lambda s: dop8(f, t, h, v, s)[1], 0.0, dt, v, v_end, xtol=1e-14 * dt)
+
+
+def advance(step, f, t, h, v, dt, *, ground=0.0, end=None):
+    """Take one step of dt, or the part of it up to the first event; `end` is (h, v) after the step, if it is known.
 
     The length of a shortened step is found by a bracketed root search on the step itself: no interpolant, so the
     method keeps its order. Where v changes sign, the search is for that turn first, because between two points above
@@ -435,7 +515,7 @@ def advance(step, f, t, h, v, dt, *, ground=0.0):
     """
 
     try:
-        h_end, v_end = step(f, t, h, v, dt)
+        h_end, v_end = end or step(f, t, h, v, dt)
     except OverflowError:
         h_end = v_end = math.inf
     if not -math.inf < h_end + v_end < math.inf:
@@ -444,8 +524,10 @@ def advance(step, f, t, h, v, dt, *, ground=0.0):
     if not turns and h_end > ground:
         return dt, h_end, v_end, None
 
+    known = {0.0: (h, v), dt: (h_end, v_end)}
+
     def to(s):
-        return step(f, t, h, v, s) if s else (h, v)  # an implicit method would divide by zero
+        return known.get(s) or step(f, t, h, v, s)
 
     end = dt
     if turns:

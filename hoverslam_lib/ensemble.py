@@ -10,6 +10,7 @@ import math
 import sys
 import time
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -27,8 +28,8 @@ from hoverslam_lib.descent import (
     coast,
     never_comes_down,
     speed_after_fall,
+    walk,
 )
-from hoverslam_lib.ignition import deepest
 from hoverslam_lib.integrators import step_function
 
 BLOCK = 16_384
@@ -373,7 +374,7 @@ class _Fall:
     """The nodes of the one fall that flights begin with which differ in their ignition alone."""
 
     def __init__(self, descent, t_end, solver):
-        nodes, end = coast(descent, t_end, dt=solver.dt, step=solver.method)
+        nodes, end = coast(descent, t_end, partial(walk, solver.method, dt=solver.dt))
         if end == "space":
             raise never_comes_down(*nodes[-1][1:])
         self._nodes = np.array(nodes).T
@@ -410,7 +411,7 @@ def _burn(descent, lanes, t, h, v, solver, table):
     """Burn at full thrust: the hover height, and what becomes of the flight on the way there."""
     n, booster = len(lanes), descent.booster
     strong = _column(booster.thrust, n) > descent.weight(0.0, booster.dry_mass)
-    floor = np.where(strong, deepest(descent.planet), 0.0)  # without a hover height, the ground ends it
+    floor = np.where(strong, descent.planet.deepest, 0.0)  # without a hover height, the ground ends it
     phase = _burning, descent, lanes, h, v, _column(booster.burn_duration, n), floor
     ends = _March(*phase, solver, stops=True).run()
     table.height[lanes[strong]] = _hover_heights(descent, lanes, ends, floor, solver)[strong]

@@ -4,19 +4,22 @@ import math
 from bisect import bisect_right
 from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from operator import itemgetter
 
 import numpy as np
 
 from hoverslam_lib import _validate
 from hoverslam_lib._roots import bracketed_root
-from hoverslam_lib.descent import Descent, StepTooLargeError, coast, finish, fly, require_one_descent, walk
-from hoverslam_lib.integrators import dop8, rk4, step_function
+from hoverslam_lib.descent import Descent, TooManyStepsError, coast, finish, fly, require_one_descent, stride, walk
+from hoverslam_lib.integrators import dop8, step_function
 from hoverslam_lib.trajectory import rounding
 
 NEAR_ZERO = 1e-6
 """A hover no further from the ground than this share of the height at the start is taken for one at the ground."""
+
+MOST_TRIES = 80_000
+"""Steps that a search may try before it gives up: a million evaluations of the forces, some seconds."""
 
 
 class NoSoftLanding(ValueError):
@@ -26,11 +29,11 @@ class NoSoftLanding(ValueError):
     ----------
     reason : str
         "thrust" (not above the dry weight), "too late" (already at t = 0), "too weak" (to stop at the ground: a burn
-        stops far above it, or only below it), "tank" (too small) or "never comes down".
+        stops far above it or climbs away, or only below it), "tank" (too small) or "never comes down".
     amount : float
         By how much: the thrust that is missing [N], the depth below the ground at which a burn from t = 0 would stop
-        [m] (inf: see `hover_height`), the height at which the latest burn that stops above the ground does so [m], the
-        propellant that is missing [kg], the speed above escape speed [m/s].
+        [m] (inf: see `hover_height`), the height at which the latest burn that stops above the ground does so [m] (inf
+        if it climbs away), the propellant that is missing [kg], the speed above escape speed [m/s].
     """
 
     def __init__(self, reason, amount, message):
@@ -96,14 +99,9 @@ def hover_height(descent, t_ignite, *, dt=0.02, method="rk4"):
     _validate.step_count(min(t_ignite, descent.shortest_fall()), dt)
     step = step_function(method)
     _require_thrust(descent)
-    nodes, end = coast(descent, t_ignite, dt=dt, step=step)
-    return math.nan if end == "ground" else _hover_height(descent, *nodes[-1], dt=dt, step=step)
-
-
-def _hover_height(descent, t, h, v, *, dt, step):
-    hardest = (descent.booster.thrust + abs(descent.drag(h, v))) / descent.booster.dry_mass
-    _validate.step_count(abs(v) / hardest, dt)
-    return _stop(descent, t, h, v, dt=dt, step=step)[1]
+    march = partial(walk, step, dt=dt)
+    nodes, end = coast(descent, t_ignite, march)
+    return math.nan if end == "ground" else _stop(descent, *nodes[-1], march)[1]
 
 
 class FreeFall:
@@ -126,6 +124,7 @@ class FreeFall:
     def __init__(self, descent, *, dt=0.02, method="rk4"):
         self.flight = fly(descent, None, dt=dt, method=method)
         self.descent, self._dt, self._step = descent, float(dt), step_function(method)
+        self._march = partial(walk, self._step, dt=self._dt)
         self._nodes = np.stack([self.flight.t, self.flight.h, self.flight.v], axis=1)
 
     def fly(self, t_ignite, controller=None):
@@ -136,11 +135,7 @@ class FreeFall:
         """Return the height [m] that `hover_height` returns."""
         _require_thrust(self.descent)
         nodes, end = self._until(t_ignite)
-        return (
-            math.nan
-            if end == "ground"
-            else _hover_height(self.descent, *nodes[-1].tolist(), dt=self._dt, step=self._step)
-        )
+        return math.nan if end == "ground" else _stop(self.descent, *nodes[-1].tolist(), self._march)[1]
 
     def _until(self, t_ignite):
         """What `coast` returns: the last step before t_ignite is taken anew, to end on it."""
@@ -150,7 +145,7 @@ class FreeFall:
             return self._nodes, "ground"
         before = max(i - 1, 0)
         start = tuple(self._nodes[before].tolist())
-        last, end = coast(self.descent, t_ignite, dt=self._dt, step=self._step, start=start)
+        last, end = coast(self.descent, t_ignite, self._march, start)
         return np.concatenate([self._nodes[:before], last]), end
 
 
@@ -173,34 +168,30 @@ def best_ignition(descent):
     ------
     NoSoftLanding
         With its reason and by how much.
+    ValueError
+        If the search would take more than a million evaluations of the forces, as in a fall of years through dense air.
     """
     require_one_descent(descent)
     _require_thrust(descent)
-    found = None
-    for n in range(14):
-        before = found
+    tries = iter(range(MOST_TRIES))
+    coarse, fine = partial(stride, 1e-5, tries), partial(stride, 1e-12, tries)
+    try:
+        fall = _whole_fall(descent, fine)
         try:
-            found = _solve(descent, rk4, 0.5) if n == 0 else _solve(descent, dop8, 0.5**n, near=before)
-        except (StepTooLargeError, OverflowError):
-            continue
-        except NoSoftLanding:
-            if n < 2:  # look more closely before believing it
-                continue
-            raise
-        # order 8: the error left is some hundred times smaller than this change
-        if n > 1 and before and abs(found.t_ignite - before.t_ignite) <= 1e-10 * found.t_touchdown:
-            break
-    else:
-        raise ArithmeticError("the ignition time does not settle down, however small the steps are made")
-
+            near = _solve(descent, fall, coarse)
+        except NoSoftLanding:  # look more closely before believing it
+            near = None
+        found = _solve(descent, fall, fine, near)
+    except TooManyStepsError as error:
+        raise ValueError(_gave_up(descent, *error.node)) from None
     if found.propellant_left < -1e-9 * descent.booster.propellant_mass:
         missing = -found.propellant_left
         burn_time = found.t_touchdown - found.t_ignite
         raise NoSoftLanding(
             "tank",
             missing,
-            f"the tank is too small: the burn takes {burn_time:.2f} s, the tank is empty after "
-            f"{descent.booster.burn_duration:.2f} s; {_validate.digits(missing)} kg of propellant are missing, "
+            f"the tank is too small: the burn takes {burn_time:.4g} s, the tank is empty after "
+            f"{descent.booster.burn_duration:.4g} s; {_validate.digits(missing)} kg of propellant are missing, "
             "and more to lift them",
         )
     return found
@@ -251,64 +242,53 @@ def _require_thrust(descent):
     weight = descent.weight(0.0, booster.dry_mass)
     missing = weight - booster.thrust
     if missing >= 0:
-        short = (
-            f"{booster.thrust:.6g} N is {_validate.digits(missing)} N too little" if missing else "it only equals it"
-        )
+        short = f"{_validate.digits(missing)} N are missing" if missing else "it only equals it"
         raise NoSoftLanding(
             "thrust", missing, f"thrust must exceed the dry weight on the ground, {weight:.6g} N: {short}"
         )
 
 
-def _first_dt(descent):
-    """A step of the fall to begin with [s]: a small part of it, and of the time in which the air changes."""
-    g, v = descent.planet.gravity(0.0), descent.velocity
-    fastest = math.sqrt(v**2 + 2 * g * descent.height)
-    fall = 2 * descent.height / (fastest - v) if v < 0 else (v + fastest) / g
-    return min(fall / 24, descent.planet.scale_height / fastest) if descent.planet.surface_density else fall / 24
+def _gave_up(descent, t, h, v):
+    planet, lifts = descent.planet, descent.booster.thrust / descent.weight(0.0, descent.booster.dry_mass)
+    air = f", air of {planet.surface_density:g} kg/m³ with a scale height of {planet.scale_height:g} m"
+    return (
+        f"no ignition time was found in {MOST_TRIES:,} steps: at t = {t:.4g} s, h = {h:.4g} m the booster still has "
+        f"{v:.3g} m/s (start at {descent.height:g} m, thrust {lifts:.6g} dry weights"
+        f"{air if planet.surface_density else ''}); start lower, with more thrust or in thinner air"
+    )
 
 
-def _first_dt_of_burn(descent, h, v):
-    """The same for a burn from (h, v), which may be much shorter or longer than the fall before it."""
-    braking = descent.acceleration(throttle=1.0)(0.0, h, 0.0)
-    if not v < 0 < braking:
-        return _first_dt(descent)
-    air = descent.planet.scale_height / -v if descent.planet.surface_density else math.inf
-    drag = descent.drag(h, v)  # alone it would stop the booster within some m·v/drag
-    damping = -descent.booster.initial_mass * v / drag if drag else math.inf
-    orbit = math.sqrt((descent.planet.radius + h) / descent.planet.gravity(h))  # a radian of it: gravity changes
-    return min(-v / braking / 4, air, damping, orbit / 4)
-
-
-def _solve(descent, step, fraction, near=None):
-    """The optimum as a method sees it with a fraction of the first step."""
-    dt = fraction * _first_dt(descent)
-    nodes, end = coast(descent, math.inf, dt=dt, step=step)
-    t_end = nodes[-1][0]
+def _whole_fall(descent, march):
+    nodes, end = coast(descent, math.inf, march)
     if end == "space":
         h = descent.height
         excess = descent.velocity - math.sqrt(2 * descent.planet.gravity(h) * (descent.planet.radius + h))
-        above = _validate.digits(excess)
-        raise NoSoftLanding("never comes down", excess, f"the booster never comes down: {above} m/s above escape speed")
+        faster = f"{_validate.digits(excess)} m/s above" if excess > 0 else "at"
+        message = f"the booster never comes down: it starts {faster} escape speed; let it climb more slowly"
+        raise NoSoftLanding("never comes down", excess, message)
+    return nodes
+
+
+def _solve(descent, fall, march, near=None):
+    """The optimum, given the fall and a way to take the steps of a burn: roughly, or from one near it to all digits."""
+    t_end, close = fall[-1][0], 1e-13 if near else 1e-6
     f = descent.acceleration()
 
     @cache
     def lit(t_ignite):
         """State at ignition, with one partial step from the stored fall, and where a burn from there stops."""
-        t, h, v = nodes[bisect_right(nodes, t_ignite, key=itemgetter(0)) - 1]
-        h, v = step(f, t, h, v, t_ignite - t)
-        return h, v, *_stop(descent, t_ignite, h, v, dt=fraction * _first_dt_of_burn(descent, h, v), step=step)
+        t, h, v = fall[bisect_right(fall, t_ignite, key=itemgetter(0)) - 1]
+        h, v = dop8(f, t, h, v, t_ignite - t)
+        return h, v, *_stop(descent, t_ignite, h, v, march)
 
     def missed_by(t_ignite):
-        return lit(t_ignite)[-1]
+        h = lit(t_ignite)[-1]
+        return 0.0 if abs(h) < close * descent.height else h
 
-    bracket = None
-    if near is not None:
-        low, high = max(near.t_ignite - 1e-5 * t_end, 0.0), min(near.t_ignite + 1e-5 * t_end, t_end)
-        bracket = low, high, missed_by(low), missed_by(high)
-    if bracket is None or not bracket[2] >= 0 >= bracket[3]:
-        bracket = _bracket(missed_by, nodes, deepest(descent.planet))
-    t_ignite = bracketed_root(missed_by, *bracket, xtol=(1e-6 if near is None else 1e-12) * t_end)
-    if near is not None and abs(missed_by(t_ignite)) > NEAR_ZERO * descent.height:  # steep, or no root but a jump
+    bracket = _near(lit, near.t_ignite, t_end) if near else None
+    bracket = bracket or _bracket(missed_by, fall, descent.planet.deepest)
+    t_ignite = bracketed_root(missed_by, *bracket, xtol=close * t_end)
+    if near and abs(missed_by(t_ignite)) > NEAR_ZERO * descent.height:  # steep, or no root but a jump
         t_ignite = bracketed_root(missed_by, *bracket)
         if abs(missed_by(t_ignite)) > NEAR_ZERO * descent.height:
             # next to the jump rounding decides on which side a burn ends
@@ -321,20 +301,31 @@ def _solve(descent, step, fraction, near=None):
 
 def _too_weak(t_ignite, height):
     """The stop jumps where gravity, which grows on the way down, just outweighs the thrust."""
+    stops = f"stops {_validate.digits(height)} m above it or higher" if height < math.inf else "climbs away"
     return NoSoftLanding(
         "too weak",
         height,
-        f"the engine is too weak to stop at the ground: lit up to {t_ignite:.6g} s, the booster stops "
-        f"{_validate.digits(height)} m above it or higher; lit later, it does not stop above it",
+        f"the engine is too weak to stop at the ground: lit up to {t_ignite:.6g} s, the booster {stops}; lit later, "
+        "it does not stop above it; it needs more thrust",
     )
 
 
-def _bracket(missed_by, nodes, deepest):
+def _near(lit, t, t_end):
+    """A narrow bracket with t near one end, if there is one: what `_bracket` returns, or None.
+
+    A second later the hover is some v lower. Drag that takes most of the speed makes it less, hence the factor.
+    """
+    _, v, _, g = lit(t)
+    other = min(max(t - 20 * g / v, 0.0), t_end) if v else t
+    g_other = lit(other)[-1]
+    return (t, other, g, g_other) if g * g_other <= 0 else None
+
+
+def _bracket(missed_by, fall, deepest):
     """Two ignition times between which the hover height changes sign, and the hover heights there."""
-    high, g_high = nodes[-1][0], missed_by(nodes[-1][0])
-    top = next(i for i, (_, _, v) in enumerate(nodes) if v <= 0)
-    for i in sorted({top * k // 8 for k in range(9)}, reverse=True):  # back from the top, through an ascent if any
-        t = nodes[i][0]
+    high, g_high = fall[-1][0], missed_by(fall[-1][0])
+    t_top = next(t for t, _, v in fall if v <= 0)
+    for t in sorted({t_top * k / 8 for k in range(9)}, reverse=True):  # back from the top, through an ascent if any
         g = missed_by(t)
         if g >= 0:
             return t, high, g, g_high
@@ -343,28 +334,20 @@ def _bracket(missed_by, nodes, deepest):
     raise NoSoftLanding(
         "too late",
         -g_high,
-        f"too late already at t = 0: a burn from the start on would stop {depth} m below the ground",
+        f"too late already at t = 0: a burn from the start on would stop {depth} m below the ground; "
+        "start higher or slower, or with more thrust",
     )
 
 
-def deepest(planet):
-    """How far the air, or the planet where there is none, can be continued below the ground [m], negative."""
-    with_air, without = -2 * planet.scale_height, -planet.radius / 2
-    if _validate.is_column(planet.surface_density):
-        return np.where(planet.surface_density > 0, with_air, without)
-    return with_air if planet.surface_density else without
-
-
-def _stop(descent, t, h, v, *, dt, step):
+def _stop(descent, t, h, v, march):
     """When and where a full burn from (t, h, v) comes to rest, the ground ignored: (t, h). See `hover_height`."""
-    floor, t_empty = deepest(descent.planet), t + descent.booster.burn_duration
+    deepest, t_empty = descent.planet.deepest, t + descent.booster.burn_duration
     burning, dry = descent.acceleration(throttle=1.0, since=t), descent.acceleration_when_dry()
     for f, t_end in ((burning, t_empty), (dry, math.inf)):
-        start = t, h, v
-        for t, h, v, event in walk(step, f, start, t_end, dt=dt, ground=-math.inf):  # noqa: B007 (v counts below)
+        for t, h, v, event in march(f, (t, h, v), t_end, ground=deepest):  # noqa: B020
             if event == "stop":
                 return t, h
-            if h < floor:
+            if event == "ground":
                 return t, -math.inf
-        if v > 0:
-            return math.inf, math.inf  # dry and climbing with thrust above weight
+            if v > 0 and f(t, h, 0.0) > 0:  # it climbs, and thrust outweighs it, ever more so
+                return math.inf, math.inf

@@ -153,8 +153,28 @@ def gauss4(f, t, h, v, dt):
 
 def dop8(f, t, h, v, dt):
     """The eighth-order formula of Dormand and Prince, twelve stages, at a fixed step (coefficients: `_dop853`)."""
+    dh, dv = _weighted(_dop853.B, *_dop8_stages(f, t, h, v, dt))
+    return h + dt * dh, v + dt * dv
+
+
+def dop8_and_error(f, t, h, v, dt):
+    """What `dop8` returns, and estimates of its error in h [m] and in v [m/s] (Hairer et al. I, section II.10).
+
+    They are made of the differences to formulas of order 5 and 3 with the same stages, so as to shrink with dt as the
+    error of order 8 does.
+    """
+    stages = _dop8_stages(f, t, h, v, dt)
+    dh, dv = _weighted(_dop853.B, *stages)
+    h5, v5 = _weighted(_dop853.E5, *stages)
+    h3, v3 = _weighted(_dop853.B3, *stages)
+    h_error = dt * h5 * h5 / (math.hypot(h5, 0.1 * (dh - h3)) or 1.0)
+    v_error = dt * v5 * v5 / (math.hypot(v5, 0.1 * (dv - v3)) or 1.0)
+    return h + dt * dh, v + dt * dv, h_error, v_error
+
+
+def _dop8_stages(f, t, h, v, dt):
     velocities, accelerations = [], []
-    for node, row in zip(_dop853.C, _dop853.A, strict=True):
+    for node, row in _dop853.STAGES:
         dh = dv = 0.0
         for j, a in row:
             dh = dh + a * velocities[j]
@@ -162,11 +182,15 @@ def dop8(f, t, h, v, dt):
         v_stage = v + dt * dv
         velocities.append(v_stage)
         accelerations.append(f(t + node * dt, h + dt * dh, v_stage))
+    return velocities, accelerations
+
+
+def _weighted(row, velocities, accelerations):
     dh = dv = 0.0
-    for j, b in _dop853.B:
-        dh = dh + b * velocities[j]
-        dv = dv + b * accelerations[j]
-    return h + dt * dh, v + dt * dv
+    for j, a in row:
+        dh = dh + a * velocities[j]
+        dv = dv + a * accelerations[j]
+    return dh, dv
 
 
 def _slopes(f, t, h, v):

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -51,11 +50,26 @@ class Planet:
 
     def air_density(self, h):
         """Density of the air at height h [m]: kg/m³ (`rho_air` of Listings 1 and 4)."""
-        x = -h / self._scale_height
-        exp = math.exp if isinstance(x, float) else np.exp
-        return self.surface_density * exp(x)
+        return self.air_density_law()(h)
 
-    @cached_property
+    def air_density_law(self):
+        """Return `air_density` as a function of h that has looked up what does not change: it is called often."""
+        surface_density, scale_height = self.surface_density, self._scale_height
+
+        def air_density(h):
+            x = -h / scale_height
+            exp = math.exp if isinstance(x, float) else np.exp
+            return surface_density * exp(x)
+
+        return air_density
+
+    @property
+    def deepest(self):
+        """How far the air, and the planet itself, can be continued below the ground [m], negative."""
+        depth = np.minimum(2 * self._scale_height, self.radius / 2)
+        return -depth if np.ndim(depth) else -float(depth)
+
+    @property
     def _scale_height(self):
         """That of the air; inf where there is none, so that its density is 0 at any height."""
         if _validate.is_column(self.surface_density):

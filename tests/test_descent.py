@@ -1,5 +1,6 @@
 import math
 import time
+from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
@@ -18,6 +19,7 @@ from hoverslam_lib import (
     Booster,
     Descent,
     Planet,
+    _validate,
     fly,
     hover_height,
     observed_order,
@@ -31,6 +33,8 @@ from hoverslam_lib.descent import (
     SOFT_SPEED,
     STOPPED_TOO_HIGH,
     StepTooLargeError,
+    TooManyStepsError,
+    stride,
 )
 
 PAPER = Descent()
@@ -767,6 +771,127 @@ def test_a_dense_ascent_is_not_taken_for_longer_than_it_is():
     descent = Descent(planet=venus, height=10.0, velocity=9_000.0)
     assert referee.free_fall(descent)[-1][0] < 20
     assert fly(descent, None, dt=2e-4).outcome == "crash"
+
+
+SMALL = Planet(mass=1.5e20, radius=100e3, surface_density=1.0, scale_height=1e3)
+
+
+@pytest.mark.parametrize(("faster", "air_holds_it"), [(1.1, True), (1.25, True), (1.3, False), (1.45, False)])
+def test_air_holds_a_booster_that_starts_above_escape_speed(faster, air_holds_it):
+    # of v² this air takes 1 - exp(-½) = 39 %, so that 1.28 times escape speed is enough
+    booster, gm = Booster(1_000.0, 1_000.0, 10.0, 30e3, 1.0, math.sqrt(1 / math.pi)), 6.6743e-11 * SMALL.mass
+    descent = Descent(booster, SMALL, height=1e-3, velocity=faster * math.sqrt(2 * gm / SMALL.radius))
+    if air_holds_it:
+        assert fly(descent, None, dt=0.5, method="dop8").touchdown == pytest.approx(
+            referee.free_fall(descent)[-1][::2], rel=1e-7
+        )
+    else:
+        with pytest.raises(ValueError, match="never comes down"):
+            fly(descent, None, dt=0.5)
+        up = referee.solve(referee.equation(descent, 0.0, 2_000.0), (0.0, 1e-3, descent.velocity), 1e4)[0]
+        assert up[-1][2] > math.sqrt(2 * gm / (SMALL.radius + up[-1][1]))
+
+
+@pytest.mark.parametrize("height", [1e-4, 4e-3, 9.9e-3, 11e-3])
+@pytest.mark.parametrize("velocity", [-5.0, -2.5])
+def test_a_tank_empty_just_above_the_ground_and_fast_is_no_landing(height, velocity):
+    booster = replace(FALCON_9, propellant_mass=2.0)  # a burn of 1.4 ms
+    h_empty = referee.fly(Descent(booster, EARTH, 1.0, velocity), 0.0).burnout[1]
+    descent = Descent(booster, EARTH, 1.0 - h_empty + height, velocity)
+    flight = fly(descent, 0.0, dt=1e-3)
+    assert flight.outcome == referee.fly(descent, 0.0).outcome == OUT_OF_PROPELLANT
+    assert flight.touchdown is None
+    assert flight.h[-1] == pytest.approx(height, abs=1e-6)
+    assert flight.v[-1] < -SOFT_SPEED
+
+
+# ---- steps that choose their own length ---------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-9, 1e-12])
+@pytest.mark.parametrize("descent", [PAPER, LANDING_BURN, Descent(planet=MOON), ASCENDING, Descent(height=1e7)])
+def test_a_stride_falls_as_the_independent_flight_does(descent, tolerance):
+    mesh = referee.free_fall(descent)
+    nodes = []
+    for node in stride(tolerance, iter(range(1000)), descent.acceleration(), mesh[0], math.inf):
+        nodes.append(node)
+        if node[3] == "ground":
+            break
+    assert nodes[-1][:3] == pytest.approx(mesh[-1], rel=100 * tolerance, abs=1e-9)
+    if descent is ASCENDING:
+        top = next(node for node in mesh if node[2] == 0)
+        assert next(node for node in nodes if node[3] == "apex")[:3] == pytest.approx(top, rel=100 * tolerance)
+
+
+def test_a_stride_is_as_long_as_it_may_be():
+    def tried(descent, tolerance):
+        tries = iter(range(1000))
+        *_, end = stride(tolerance, tries, descent.acceleration(), (0.0, 150e3, -2000.0), 60.0)
+        assert end[0] == 60.0
+        return next(tries)
+
+    assert tried(Descent(planet=MOON), 1e-12) < 10
+    assert 2 * tried(PAPER, 1e-5) < tried(PAPER, 1e-12) < 40
+
+
+def test_a_stride_ends_when_its_tries_do():
+    with pytest.raises(TooManyStepsError, match=r"too many steps: t = .* s, h = .* m, v = .* m/s") as caught:
+        list(stride(1e-12, iter(range(9)), PAPER.acceleration(), (0.0, 150e3, -2000.0), math.inf))
+    t, h, v = caught.value.node
+    assert 1 < t < 60
+    assert (h, v) == pytest.approx(referee.at_ignition(PAPER, t)[1:], rel=1e-11)
+
+
+# ---- flights that would not end -----------------------------------------------------------------------------------
+
+
+@contextmanager
+def evaluations():
+    """Counts evaluations of the forces: a list that grows by one with each."""
+    counted, gravity = [], Planet.gravity
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Planet, "gravity", lambda planet, h: counted.append(h) or gravity(planet, h))
+        yield counted
+
+
+@pytest.fixture
+def short_walks(monkeypatch):
+    """Walks may have twenty thousand steps, and look ahead after a thousand."""
+    monkeypatch.setattr(_validate, "MAX_STEPS", 20_000)
+    monkeypatch.setattr("hoverslam_lib.descent.LONG_WALK", 1_000)
+
+
+THICK = Planet(mass=4.867e24, radius=6.0518e6, surface_density=65.0, scale_height=15.9e3)
+FAR = Descent(planet=MOON, height=1e7, velocity=0.0)
+BRAKED = Descent(planet=THICK, height=1e3, velocity=-1000.0)  # by the air, in a fraction of what the engine would take
+
+
+@pytest.mark.usefixtures("short_walks")
+@pytest.mark.parametrize(
+    ("run", "lasts"),
+    [
+        (lambda dt: fly(Descent(planet=THICK), None, dt=dt), lambda: referee.free_fall(Descent(planet=THICK))[-1][0]),
+        (lambda dt: fly(FAR, None, dt=dt), lambda: referee.free_fall(FAR)[-1][0]),  # where gravity is weak
+        (lambda dt: hover_height(BRAKED, 0.0, dt=dt), lambda: referee.hover(BRAKED, 0.0)[0]),
+    ],
+)
+def test_a_walk_looks_ahead_whether_it_ends_within_the_steps_allowed(run, lasts):
+    lasts = lasts()
+    run(lasts / 19_000)
+    with evaluations() as counted, pytest.raises(ValueError, match=r"take 20,9\d\d steps or more; at most 20,000"):
+        run(lasts / 20_990)
+    assert len(counted) < 4 * 1_000 + 1_100
+
+
+def test_a_fall_from_very_high_is_refused_before_it_is_flown():
+    with (
+        evaluations() as counted,
+        pytest.raises(ValueError, match=r"would take [0-9,]{10} steps or more") as caught,
+    ):
+        fly(Descent(height=1e9), None)
+    steps = float(str(caught.value).split("take ")[1].split(" ")[0].replace(",", ""))
+    assert steps == pytest.approx(referee.free_fall(Descent(height=1e9))[-1][0] / 0.02, rel=1e-3)
+    assert len(counted) < 6e5
 
 
 def test_too_late_an_ignition_on_the_way_out_is_refused_at_once():

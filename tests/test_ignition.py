@@ -1,6 +1,7 @@
 import copy
 import math
 import pickle
+import re
 import time
 from dataclasses import replace
 from functools import cache
@@ -8,7 +9,7 @@ from functools import cache
 import numpy as np
 import pytest
 import referee
-from test_descent import random_descents
+from test_descent import evaluations, random_descents
 
 from hoverslam_lib import (
     EARTH,
@@ -282,6 +283,81 @@ def test_a_burn_that_lasts_for_hours_is_not_stepped_over():
         best_ignition(descent)
     assert caught.value.reason == "too weak"
     assert 1e3 < caught.value.amount < 400e3
+
+
+@pytest.mark.parametrize("speed", [130.0, 200.0])
+def test_a_burn_that_climbs_away_is_said_to(speed):
+    # nearly all mass is dead weight: lighter than the thrust up there, heavier down here
+    booster = Booster(35e3, 37e3, 1e-9, 36e3, 0.5, 0.2)
+    descent = Descent(booster, Planet(1.5e20, 1e5, 0.0, 300.0), height=1e3, velocity=speed)
+    with pytest.raises(NoSoftLanding, match=r"too weak.* the booster climbs away; .* it needs more thrust") as caught:
+        best_ignition(descent)
+    t = float(str(caught.value).split("lit up to ")[1].split(" ")[0])
+    assert hover_height(descent, t * (1 - 1e-4)) == caught.value.amount == math.inf
+    assert hover_height(descent, t * (1 + 1e-4)) < 0
+
+
+def dry_weights(thrust, planet=EARTH, **booster):
+    """The paper's booster with so many dry weights of thrust, and one digit more at least."""
+    weight = 27_200 * planet.gravity(0.0)
+    return replace(FALCON_9, thrust=max(thrust * weight, math.nextafter(weight, math.inf)), **booster)
+
+
+HARDLY = [
+    (Descent(dry_weights(1.0)), "too late"),
+    (Descent(dry_weights(1.0), height=10.0, velocity=50.0), "too late"),
+    (Descent(dry_weights(1.0, propellant_mass=1.0), height=10.0, velocity=0.0), "too weak"),
+    (Descent(dry_weights(1.0, MOON), MOON, height=10.0, velocity=-1.0), "too late"),
+    (Descent(dry_weights(1.0, MOON, propellant_mass=1e-3), MOON, height=10.0, velocity=50.0), "too weak"),
+    (Descent(dry_weights(1.001, MOON, propellant_mass=1e-3), MOON, height=10.0, velocity=50.0), "tank"),
+    (Descent(replace(FALCON_9, propellant_mass=1e-9)), "tank"),
+    (Descent(planet=MOON, velocity=math.sqrt(2 * MOON.gravity(150e3) * (MOON.radius + 150e3))), "never comes down"),
+]
+
+
+@pytest.mark.parametrize(("descent", "reason"), HARDLY)
+def test_every_refusal_has_numbers_that_are_numbers(descent, reason):
+    with evaluations() as counted, pytest.raises(NoSoftLanding) as caught:
+        best_ignition(descent)
+    assert caught.value.reason == reason
+    assert not re.search(r"\b(inf|nan|-?0|0\.00) ", str(caught.value))
+    assert re.search("more thrust|propellant are missing|climb more slowly", str(caught.value))
+    assert len(counted) < 2e5
+
+
+TANKER, THIN_LAYER = replace(FALCON_9, propellant_mass=300e3), replace(EARTH, scale_height=0.3)
+FAR_AND_SLOW = {  # what took minutes, or never ended, with steps of one length
+    "from a million kilometres": Descent(TANKER, height=1e9, velocity=0.0),
+    "air of decimetres": Descent(TANKER, THIN_LAYER),
+    "air of decimetres, slow": Descent(TANKER, THIN_LAYER, height=20e3, velocity=-10.0),
+    "no air, hardly any thrust": Descent(
+        dry_weights(1.02, MOON, propellant_mass=100.0, burn_rate=0.02), MOON, height=10e3, velocity=-1.0
+    ),
+    "no air, next to no gravity": Descent(FALCON_9, Planet(1e12, 1e4, 0.0, 1e3), height=1e4, velocity=-1.0),
+}
+
+
+@pytest.mark.parametrize("name", FAR_AND_SLOW)
+def test_an_answer_takes_few_evaluations_however_long_the_descent(name):
+    descent = FAR_AND_SLOW[name]
+    with evaluations() as counted:
+        t_ignite = best_ignition(descent).t_ignite
+    assert len(counted) < 2e4
+    if descent.planet == THIN_LAYER:  # the last decimetres are slow: there is nothing but the engine to brake
+        descent = replace(descent, planet=replace(THIN_LAYER, surface_density=0.0))
+    near = 1e-9 * referee.free_fall(descent)[-1][0]
+    assert referee.hover(descent, t_ignite - near)[1] > 0 > referee.hover(descent, t_ignite + near)[1]
+
+
+def test_a_search_that_would_take_too_long_ends_and_says_what_to_change():
+    syrup = Planet(mass=5.97e24, radius=6.378e6, surface_density=1e5, scale_height=1e6)
+    descent = Descent(FALCON_9_LANDING_BURN, syrup, height=1e6, velocity=-10.0)
+    with evaluations() as counted, pytest.raises(ValueError, match="no ignition time was found in 80,000") as caught:
+        best_ignition(descent)
+    for part in ("start at 1e+06 m", "thrust 3.17", "100000 kg/m³", "scale height of 1e+06 m", "start lower", "thin"):
+        assert part in str(caught.value)
+    assert not isinstance(caught.value, NoSoftLanding)
+    assert len(counted) < 1.1e6
 
 
 def test_no_soft_landing_survives_copy_and_pickle():

@@ -8,8 +8,8 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.integrate._ivp import dop853_coefficients as dop853
 
-from hoverslam_lib import METHODS, integrate, observed_order
-from hoverslam_lib.integrators import step_function
+from hoverslam_lib import METHODS, _dop853, integrate, observed_order
+from hoverslam_lib.integrators import dop8_and_error, step_function
 
 KEYS = ["explicit_euler", "symplectic_euler", "implicit_euler", "rk4", "rkn4", "gauss4", "dop8"]
 IMPLICIT = ["implicit_euler", "gauss4"]
@@ -319,3 +319,14 @@ def test_newtons_method_says_so_where_its_slope_is_zero(v):
     # v_new - v - dt·(v_new + 1) does not depend on v_new when dt = 1 s
     with pytest.raises(ArithmeticError, match=r"implicit_euler.*did not converge.*t = 0 s.*dt = 1 s.*smaller dt"):
         METHODS["implicit_euler"].step(lambda t, h, v: v + 1, 0.0, 0.0 * v, v, 1.0)
+
+
+def test_the_estimate_of_the_error_is_that_of_dop853():
+    def row(pairs):
+        return np.array([dict(pairs).get(j, 0.0) for j in range(12)])
+
+    assert row(_dop853.E5) == pytest.approx(dop853.E5[:12], rel=1e-15, abs=0)
+    assert row(_dop853.B) - row(_dop853.B3) == pytest.approx(dop853.E3[:12], rel=1e-14, abs=1e-16)
+    # it shrinks with the step to the eighth or faster
+    _, _, *estimates = zip(*(dop8_and_error(lambda t, h, v: -h, 0.0, 3.0, 0.0, dt) for dt in (1.0, 0.5)), strict=True)
+    assert min(np.log2(large / small) for large, small in estimates) > 7.3

@@ -1,13 +1,13 @@
 """The physical models: closed forms, published values, and what their constructors refuse."""
 
 import math
-from dataclasses import FrozenInstanceError
+from dataclasses import FrozenInstanceError, asdict, replace
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from hoverslam_lib import EARTH, FALCON_9, FALCON_9_LANDING_BURN, MARS, MOON, Booster, Oscillator, Planet
+from hoverslam_lib import EARTH, FALCON_9, FALCON_9_LANDING_BURN, MARS, MOON, Booster, Descent, Oscillator, Planet, fly
 from hoverslam_lib.data import load
 
 SPRINGS = [
@@ -100,6 +100,25 @@ def test_a_planet_gives_floats_for_floats_and_the_same_values_for_arrays(planet,
     floats = [[function(float(h)) for h in row] for row in heights]
     assert all(type(value) is float for row in floats for value in row)
     np.testing.assert_allclose(function(heights), floats, rtol=5e-16)
+
+
+@pytest.mark.parametrize("planet", [EARTH, MOON], ids=["Earth", "Moon"])
+def test_a_planet_that_was_asked_is_as_it_was_made(planet):
+    planet.air_density(10.0)
+    fly(Descent(planet=planet), None, dt=5.0)
+    assert vars(planet) == asdict(planet)
+
+
+@pytest.mark.parametrize(
+    ("changed", "depth"),
+    [({}, -16_800), ({"surface_density": 0.0}, -3_189_050), ({"scale_height": 1e7}, -3_189_050)],  # half the radius
+)
+def test_air_and_planet_can_be_continued_so_far_below_the_ground(changed, depth):
+    planet = replace(EARTH, **changed)
+    assert planet.deepest == depth
+    assert type(planet.deepest) is float
+    column = replace(EARTH, **{name: np.array([value, value]) for name, value in changed.items()})
+    assert np.all(column.deepest == depth)
 
 
 # ---- booster ----------------------------------------------------------------------------------------------------

@@ -152,9 +152,9 @@ class FreeFall:
 def best_ignition(descent):
     """Find the ignition time that brings the booster to rest at height 0.
 
-    The optimum of the equation, not of a step size: steps are halved until the time no longer changes. While falling,
-    the signed hover height falls strictly with the ignition time, so there is one root; a booster that starts upward
-    may have more, and the latest is taken.
+    The optimum of the equation, not of a step size: steps choose their own length, by an estimate of their error. While
+    falling, the signed hover height falls strictly with the ignition time, so there is one root; a booster that starts
+    upward may have more, and the latest is taken.
 
     Parameters
     ----------
@@ -174,6 +174,7 @@ def best_ignition(descent):
     require_one_descent(descent)
     _require_thrust(descent)
     tries = iter(range(MOST_TRIES))
+    # roughly first, since a search takes some ten burns; then to what rounding leaves of a flight of a hundred steps
     coarse, fine = partial(stride, 1e-5, tries), partial(stride, 1e-12, tries)
     try:
         fall = _whole_fall(descent, fine)
@@ -184,7 +185,7 @@ def best_ignition(descent):
         found = _solve(descent, fall, fine, near)
     except TooManyStepsError as error:
         raise ValueError(_gave_up(descent, *error.node)) from None
-    if found.propellant_left < -1e-9 * descent.booster.propellant_mass:
+    if found.propellant_left < -1e-9 * descent.booster.propellant_mass:  # a tank that is just right may miss a digit
         missing = -found.propellant_left
         burn_time = found.t_touchdown - found.t_ignite
         raise NoSoftLanding(
@@ -243,6 +244,8 @@ def _require_thrust(descent):
     missing = weight - booster.thrust
     if missing >= 0:
         short = f"{_validate.digits(missing)} N are missing" if missing else "it only equals it"
+        if 1000 * booster.thrust > weight:
+            short += f" (thrust is in N: did you mean {booster.thrust:g} kN = {1000 * booster.thrust:g} N?)"
         raise NoSoftLanding(
             "thrust", missing, f"thrust must exceed the dry weight on the ground, {weight:.6g} N: {short}"
         )
@@ -271,7 +274,7 @@ def _whole_fall(descent, march):
 
 def _solve(descent, fall, march, near=None):
     """The optimum, given the fall and a way to take the steps of a burn: roughly, or from one near it to all digits."""
-    t_end, close = fall[-1][0], 1e-13 if near else 1e-6
+    t_end, close = fall[-1][0], 1e-13 if near else 1e-6  # a tenth of what the steps are good for
     f = descent.acceleration()
 
     @cache
@@ -325,17 +328,20 @@ def _bracket(missed_by, fall, deepest):
     """Two ignition times between which the hover height changes sign, and the hover heights there."""
     high, g_high = fall[-1][0], missed_by(fall[-1][0])
     t_top = next(t for t, _, v in fall if v <= 0)
-    for t in sorted({t_top * k / 8 for k in range(9)}, reverse=True):  # back from the top, through an ascent if any
+    # back from the top, through an ascent if any: in eighths, as the hover height has few turns on the way
+    for t in sorted({t_top * k / 8 for k in range(9)}, reverse=True):
         g = missed_by(t)
         if g >= 0:
             return t, high, g, g_high
         high, g_high = t, g
     depth = _validate.digits(-g_high) if g_high > -math.inf else f"more than {_validate.digits(-deepest)}"
+    start = fall[0][1]
+    asked = f" (height is in m: did you mean {start:g} km?)" if start < 1000 and -g_high < 1000 * start else ""
     raise NoSoftLanding(
         "too late",
         -g_high,
         f"too late already at t = 0: a burn from the start on would stop {depth} m below the ground; "
-        "start higher or slower, or with more thrust",
+        f"start higher or slower, or with more thrust{asked}",
     )
 
 

@@ -575,3 +575,24 @@ def test_shared_fall_takes_a_controller_and_refuses_what_fly_refuses():
         fall.fly(20.0, 0.5)
     with pytest.raises(ValueError, match="never comes down"):
         FreeFall(Descent(velocity=20e3))
+
+
+@pytest.mark.parametrize(
+    ("careless", "asked"),
+    [
+        (Descent(replace(FALCON_9, thrust=7605.0)), "did you mean 7605 kN = 7.605e+06 N?"),
+        (Descent(height=150.0), "did you mean 150 km?"),
+    ],
+)
+def test_a_refusal_asks_whether_a_unit_was_meant(careless, asked):
+    with pytest.raises(NoSoftLanding, match=re.escape(asked)):
+        best_ignition(careless)
+
+
+@pytest.mark.parametrize(
+    "hopeless", [Descent(replace(FALCON_9, thrust=20.0)), Descent(height=1.5e3), Descent(height=1.0, velocity=-3e3)]
+)
+def test_a_refusal_does_not_ask_where_the_unit_would_not_help(hopeless):
+    with pytest.raises(NoSoftLanding) as caught:
+        best_ignition(hopeless)
+    assert "did you mean" not in str(caught.value)

@@ -12,9 +12,12 @@ concern a module, or remembers which changes make no difference.
 
 import argparse
 import ast
+import contextlib
 import copy
 import difflib
+import importlib
 import json
+import multiprocessing
 import os
 import random
 import signal
@@ -24,6 +27,8 @@ import tempfile
 import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+
+import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -148,23 +153,31 @@ def clone(folder):
 
 def run_tests(folder, module, limit, *options):
     """Exit status of the tests of a module, or None if they took too long."""
+    process = multiprocessing.get_context("fork").Process(target=be_tested, args=(folder, module, options))
+    process.start()
+    process.join(limit)
+    status = process.exitcode
+    with contextlib.suppress(ProcessLookupError):
+        os.killpg(process.pid, signal.SIGKILL)  # and what its tests have started
+    process.join()
+    return status
+
+
+def be_tested(folder, module, options):
+    """In a process of its own, which need not import again what is imported here already."""
+    os.setsid()
+    os.chdir(folder)
+    sys.path.insert(0, str(folder))
+    sys.dont_write_bytecode = True
+    os.environ |= {"PYTHONPATH": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
+    said = os.open("said.txt", os.O_CREAT | os.O_WRONLY)
+    os.dup2(said, 1)
+    os.dup2(said, 2)
     names = [name if "/" in name else f"test_{name}" for name in TESTS[module].split()]
-    command = [sys.executable, "-B", "-m", "pytest", "-p", "no:nbval", "-p", "no:cacheprovider", "-o", "addopts="]
-    command += ["-x", "-q", *options, *(f"tests/{name}.py" for name in names if (folder / f"tests/{name}.py").exists())]
-    environment = os.environ | {"PYTHONPATH": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
-    with (folder / "said.txt").open("w") as said:
-        process = subprocess.Popen(
-            command, cwd=folder, env=environment, stdout=said, stderr=said, start_new_session=True
-        )
-        try:
-            return process.wait(limit)
-        except subprocess.TimeoutExpired:
-            return None
-        finally:
-            try:
-                os.killpg(process.pid, signal.SIGKILL)  # and what its tests have started
-            except ProcessLookupError:
-                process.wait()
+    paths = [f"tests/{name}.py" for name in names if Path(f"tests/{name}.py").exists()]
+    plugins = ["-p", "no:nbval", "-p", "no:cacheprovider", "-o", "addopts="]
+    status = pytest.main(["-x", "-q", *plugins, "-W", "ignore::pytest.PytestAssertRewriteWarning", *options, *paths])
+    os._exit(status)
 
 
 def path_of(module):
@@ -219,6 +232,8 @@ def main():
     parser.add_argument("--workers", type=int, default=1)
     parser.add_argument("--strings", action="store_true", help="change texts, too")
     given = parser.parse_args()
+    for name in ("anywidget", "hypothesis", "ipywidgets", "matplotlib.pyplot", "nbclient", "pandas", "scipy.integrate"):
+        importlib.import_module(name)
     rows = []
     for module in given.modules or TESTS:
         rows.append(try_module(module, given.number, given.seed, given.workers, given.strings))

@@ -38,7 +38,7 @@ def one_step(method, stiffness, damping, dt):
 
 
 @pytest.mark.parametrize("method", METHODS)
-@settings(max_examples=30)
+@settings(max_examples=10)
 @given(**SYSTEMS)
 def test_the_error_of_a_step_is_one_order_smaller_than_the_methods(method, stiffness, damping):
     matrix = np.array([[0.0, 1.0], [-stiffness, -damping]])
@@ -57,7 +57,7 @@ AREA = {  # by which a step multiplies areas in the phase plane of an oscillator
 
 
 @pytest.mark.parametrize("method", METHODS)
-@settings(max_examples=20)
+@settings(max_examples=10)
 @given(stiffness=strategies.spread(0.1, 10.0), z=strategies.between(1.0, 1.5))
 def test_two_methods_alone_preserve_area(method, stiffness, z):
     area = np.linalg.det(one_step(method, stiffness, 0.0, z / math.sqrt(stiffness)))
@@ -107,7 +107,7 @@ def near_best(draw):
 FLIGHTS = st.one_of(strategies.flights(near_best=False), near_best())
 
 
-@settings(max_examples=12)
+@settings(max_examples=6)
 @given(st.lists(FLIGHTS, min_size=2, max_size=4))
 def test_any_flights_are_the_independent_ones(flights):
     descents, times = zip(*flights, strict=True)

@@ -32,30 +32,30 @@ import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
 
-TESTS = {  # after the module's name, the files test_….py in the order in which they are tried
-    "_columns": "ensemble",
+TESTS = {  # the files test_….py in the order in which they are tried, and after | which of their tests: see pytest's -k
+    "_columns": "ensemble | columns or row or index or bad",
     "_dop853": "integrators",
     "_roots": "roots ensemble descent",
-    "_validate": "trajectory oscillator_planet_booster ensemble ignition descent",
+    "_validate": "trajectory oscillator_planet_booster ensemble ignition descent | bad or refused or digits or too or says or at_once",
     "animation": "animation",
     "book": "course notebooks browser/test_book",
-    "booster": "oscillator_planet_booster descent",
+    "booster": "oscillator_planet_booster",
     "collect": "collect",
-    "course": "course notebooks lesson_shape",
+    "course": "course notebooks lesson_shape | not real and not handed and not pytest",
     "data": "data",
     "descent": "descent properties ensemble ignition",
     "ensemble": "ensemble properties",
     "ignition": "ignition properties ensemble",
-    "integrators": "integrators properties",
-    "live": "live recording mission_control",
+    "integrators": "integrators",
+    "live": "live recording | not lesson and not corner and not memory",
     "metrics": "metrics",
-    "mission_control": "mission_control recording live",
+    "mission_control": "mission_control",
     "oscillator": "oscillator_planet_booster",
-    "planet": "oscillator_planet_booster descent",
-    "plotting": "plotting",
+    "planet": "oscillator_planet_booster",
+    "plotting": "plotting | not pixel",
     "published": "published",
     "recording": "recording",
-    "trajectory": "trajectory integrators descent",
+    "trajectory": "trajectory integrators",
     **{f"checks.{part}": "checks" for part in ("answers", "feedback", "judging", "pages", "record", "stopping")},
     **{f"checks.lesson_{lesson}": "checks" for lesson in ("01", "04", "09", "11", "13")},
 }
@@ -173,10 +173,12 @@ def be_tested(folder, module, options):
     said = os.open("said.txt", os.O_CREAT | os.O_WRONLY)
     os.dup2(said, 1)
     os.dup2(said, 2)
-    names = [name if "/" in name else f"test_{name}" for name in TESTS[module].split()]
-    paths = [f"tests/{name}.py" for name in names if Path(f"tests/{name}.py").exists()]
+    names, _, chosen = TESTS[module].partition(" | ")
+    paths = [f"tests/{name}.py" if "/" in name else f"tests/test_{name}.py" for name in names.split()]
     plugins = ["-p", "no:nbval", "-p", "no:cacheprovider", "-o", "addopts="]
-    status = pytest.main(["-x", "-q", *plugins, "-W", "ignore::pytest.PytestAssertRewriteWarning", *options, *paths])
+    status = pytest.main(
+        ["-x", "-q", *plugins, "-W", "ignore::pytest.PytestAssertRewriteWarning", *options, "-k", chosen, *paths]
+    )
     os._exit(status)
 
 

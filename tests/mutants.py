@@ -35,8 +35,8 @@ ROOT = Path(__file__).resolve().parent.parent
 TESTS = {  # the files test_….py in the order in which they are tried, and after | which of their tests: see pytest's -k
     "_columns": "ensemble | columns or row or index or bad",
     "_dop853": "integrators",
-    "_roots": "roots ensemble descent",
-    "_validate": "trajectory oscillator_planet_booster ensemble ignition descent | bad or refused or digits or too or says or at_once",
+    "_roots": "roots",
+    "_validate": "trajectory oscillator_planet_booster ensemble ignition descent | bad or refused or digits or at_once",
     "animation": "animation",
     "book": "course notebooks browser/test_book",
     "booster": "oscillator_planet_booster",

@@ -67,6 +67,7 @@ EQUIVALENT = {
         "runs[method] = tuple(np.array(column) for column in zip(*rows, strict=True))",
         "runs[method] = tuple(np.array(column) for column in zip(*rows, strict=False))",
     ): "all rows are pairs",
+    ("recording", 'names[-1] = "dt"', 'names[+1] = "dt"'): "there are two names where a third control is dt",
     ("ignition", "before = max(i - 1, 0)", "before = max(i - 2, 0)"): "one more step is taken anew, to the same node",
 }
 

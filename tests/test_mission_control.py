@@ -161,6 +161,7 @@ def test_moment_puts_the_dots_on_the_flight(page):
     assert len(before.get_xdata()) == trial["end"]
     assert not page.lines["dop8"][0][0].get_visible(), "a method that is not chosen is not drawn"
     assert before.get_visible()
+    assert (dot.get_marker(), dot.get_markersize()) == ("o", 7)
 
 
 def test_each_panel_has_its_quantity_and_room_for_all_of_it(page):

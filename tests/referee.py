@@ -105,14 +105,18 @@ def at_ignition(descent, t_ignite):
     return run_on(equation(descent, 0.0, initial_mass(descent)), before, t_ignite)
 
 
+def out_of_sight(planet):
+    """How far below the ground its air, or its gravity, makes sense [m]."""
+    return -2 * planet.scale_height if planet.surface_density else -planet.radius / 2
+
+
 @cache
 def hover(descent, t_ignite):
     """(t, h) where a full burn first stops falling, the ground ignored and thrust kept on at dry mass.
 
     (inf, inf) if it climbs without ever falling, h = -inf if it sinks out of sight.
     """
-    booster, planet = descent.booster, descent.planet
-    floor = -2 * planet.scale_height if planet.surface_density else -planet.radius / 2
+    booster, floor = descent.booster, out_of_sight(descent.planet)
     burning = equation(descent, 1.0, initial_mass(descent), since=t_ignite)
     dry = equation(descent, 1.0, booster.dry_mass, rate=0.0)
     t_empty = t_ignite + booster.propellant_mass / booster.burn_rate
@@ -180,8 +184,15 @@ def fly(descent, t_ignite, *, controller=None, every=math.inf):
         rhs = equation(descent, throttle, mass, since)
         while node[0] < t_end:
             falling = node[2] < 0 or (node[2] == 0 and rhs(node[0], node[1:])[1] < 0)
+            if node[2] == 0 and not falling and throttle > 0:
+                flight.touchdown = soft_fall(descent, *node)
+                if flight.touchdown or flight.hover is None:
+                    flight.hover = node[:2]
+                if flight.touchdown:
+                    flight.mesh.append((*node, mass_then - rate * (node[0] - since), throttle))
+                    return ended_softly(flight)
             start = (*node[:2], node[2] or math.copysign(1e-300, -falling))
-            mesh, turned = solve(rhs, start, t_end, stop=1)
+            mesh, _ = solve(rhs, start, t_end, stop=1, floor=out_of_sight(descent.planet))
             landed = falling and mesh[-1][1] <= 0
             if landed:
                 mesh, _ = solve(rhs, start, mesh[-1][0], stop=0)
@@ -191,12 +202,6 @@ def fly(descent, t_ignite, *, controller=None, every=math.inf):
                 flight.touchdown = node[0], node[2]
                 flight.outcome = "soft landing" if node[2] >= -2 else "crash"
                 return flight
-            if turned and falling and throttle > 0:
-                flight.touchdown = soft_fall(descent, *node)
-                if flight.touchdown or flight.hover is None:
-                    flight.hover = node[:2]
-                if flight.touchdown:
-                    return ended_softly(flight)
         mass = mass_then - rate * (node[0] - since)
         if node[0] >= t_empty:
             flight.burnout = node

@@ -63,17 +63,17 @@ def low_descents(draw):
 
 
 @st.composite
-def flights(draw):
+def flights(draw, *, near_best=True):
     """A descent and an ignition time: at any time of the fall, after it, at once, or near the best."""
     descent = draw(st.one_of(descents(), descents(), low_descents()))
     share = draw(st.one_of(st.just(0.0), between(0.0, 1.0), between(0.0, 1.0), between(1.0, 1.2)))
     late = draw(spread(1e-6, 1.0)) * draw(st.sampled_from([-1, 1]))
     try:
-        if draw(st.booleans()):
+        if near_best and draw(st.booleans()):
             return descent, max(best_ignition(descent).t_ignite + late, 0.0)
     except ValueError:  # no ignition lands it softly
         pass
-    return descent, share * fly(descent, None, dt=0.5, method="dop8").t[-1]
+    return descent, float(share * fly(descent, None, dt=0.5, method="dop8").t[-1])
 
 
 def stacked(descents):

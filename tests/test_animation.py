@@ -230,8 +230,19 @@ def test_stills_show_the_flight_at_their_times(landed):
     key = landed.touchdown[0] - np.array([1.0, 0.5, 0.0])
     fig = animation.landing_stills(landed, key)
     assert len(fig.axes) == 3
-    for ax, t in zip(fig.axes, key, strict=True):
-        assert f"{t:.2f} s" in ax.get_title(loc="left") + ax.get_title()
+    assert fig.get_size_inches().tolist() == pytest.approx([3 * 1.85, 3.4])
+    for n, (ax, t) in enumerate(zip(fig.axes, key, strict=True)):
+        now = animation.readings(landed, t)
+        title = (ax.get_title(loc="left") + ax.get_title()).splitlines()
+        assert title == [f"{t:.2f} s", now["height"], now["velocity"], now["felt"]]
+        assert ax.get_ylabel() == ("" if n else "h [m]")
+        assert bool([tick for tick in ax.get_yticklabels() if tick.get_text()]) == (n == 0)
+        assert ax.lines[-1].get_ydata()[0] == pytest.approx(animation.resample(landed, [t]).h[0])
+    highest = animation.resample(landed, key[:1]).h[0]
+    assert [ax.get_ylim() for ax in fig.axes] == [pytest.approx((-0.1 * highest, 1.65 * highest))] * 3
+    higher = animation.landing_stills(landed, key[-1:], top=3000.0)
+    assert higher.axes[0].get_ylim() == pytest.approx((-0.3, 4.95))
+    assert higher.axes[0].get_ylabel() == "h [km]"
 
 
 def test_html_carries_the_text_and_a_gif(landing):

@@ -25,7 +25,7 @@ plotting.show(fig, alt="a line to 1")
 """
 FILM = """
 from hoverslam_lib.animation import Animation
-Animation(b"GIF", "a film of 1 s", (0.0,), (40,), 480)
+display(Animation(b"GIF", "a film of 1 s", (0.0,), (40,), 480), metadata={"isolated": True})
 """
 
 
@@ -61,6 +61,7 @@ def test_refresh_executes_cleans_and_changes_nothing_the_second_time(folder, cap
     assert b"3.2.1" not in once
     assert 'alt="a line to 1"' in stored.cells[2].outputs[0].data["text/html"]
     assert 'src="data:image/gif;base64,R0lG">' in stored.cells[3].outputs[0].data["text/html"]
+    assert [cell.outputs[0].get("metadata", {}) for cell in stored.cells[1:]] == [{}, {}, {}]
     assert course.refresh(path) == []
     assert path.read_bytes() == once
     assert capfd.readouterr() == ("", ""), "neither the kernel nor who starts it has anything to say"
@@ -95,6 +96,17 @@ def test_unknown_lesson_is_named_with_those_there_are(folder, tmp_path, monkeypa
     assert repr(name) in message
     assert "01_first, " in message
     assert message.count("\n") == 1
+
+
+@pytest.mark.parametrize("command", [["refresh"], ["copy", "new"], ["collect", "."]])
+def test_where_there_are_no_notebooks_a_sentence_says_so(tmp_path, monkeypatch, capsys, command):
+    monkeypatch.setattr(course, "NOTEBOOKS", tmp_path / "notebooks")
+    (tmp_path / "one").mkdir()
+    monkeypatch.chdir(tmp_path)
+    assert course.main(command) == 2
+    said = f"there are no notebooks in {tmp_path / 'notebooks'}: run this from a checkout of the course\n"
+    assert capsys.readouterr() == ("", said)
+    assert [path.name for path in tmp_path.iterdir()] == ["one"]
 
 
 # ---- copies -------------------------------------------------------------------------------------------------------

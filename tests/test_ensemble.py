@@ -412,6 +412,8 @@ def test_a_bad_number_in_a_column_is_refused_with_its_row(cls, name, column, mes
 def test_columns_that_do_not_go_together_say_so():
     with pytest.raises(ValueError, match="same number of rows: thrust has 2, radius has 3"):
         replace(FALCON_9, thrust=np.ones(2), radius=np.ones(3))
+    with pytest.raises(ValueError, match="same number of rows: mass has 2, radius has 3"):
+        replace(EARTH, mass=np.full(2, 6e24), radius=np.full(3, 6e6))
     with pytest.raises(ValueError, match="same number of rows: booster.thrust has 2, height has 3"):
         Descent(replace(FALCON_9, thrust=np.full(2, 1e6)), height=np.ones(3))
     with pytest.raises(ValueError, match="same number of rows: height has 3, t_ignite has 2"):

@@ -8,6 +8,7 @@ import re
 import sys
 from dataclasses import replace
 from decimal import Decimal
+from types import SimpleNamespace
 
 import matplotlib.pyplot as plt
 import nbformat
@@ -286,6 +287,27 @@ def test_live_figure_leaves_no_open_figure_and_close_frees_its_widgets():
         assert plt.get_fignums() == []
         made.close()
     assert len(live_widgets()) == before
+
+
+def test_cell_run_again_closes_its_own_former_figures_and_no_other(monkeypatch, shown):
+    monkeypatch.setattr(live, "_SHOWN", {})
+
+    def show(cell, run):
+        parent = {"metadata": {"cellId": cell} if cell else {}, "header": {"msg_id": run}}
+        monkeypatch.setattr(live, "get_ipython", lambda: SimpleNamespace(get_parent=lambda: parent))
+        fig, _ = plt.subplots()
+        made.append(Live(fig, lambda x: "text 1", x=FloatSlider(1.0)))
+        made[-1].show()
+        return [figure.screen.comm is not None for figure in made]
+
+    made = []
+    for cell, run in (("a", "1"), ("a", "1"), ("b", "2"), (None, "3")):
+        assert all(show(cell, run))  # two of one run, one of another cell, one outside of any cell
+    assert show("a", "4") == [False, False, True, True, True]
+    assert show("a", "5") == [False, False, True, True, False, True]
+    assert show(None, "6") == [False, False, True, True, False, True, True]
+    for figure in made:
+        figure.close()
 
 
 def live_widgets():

@@ -161,6 +161,44 @@ def test_moment_puts_the_dots_on_the_flight(page):
     assert len(before.get_xdata()) == trial["end"]
     assert not page.lines["dop8"][0][0].get_visible(), "a method that is not chosen is not drawn"
     assert before.get_visible()
+    assert (dot.get_marker(), dot.get_markersize()) == ("o", 7)
+
+
+def test_each_panel_has_its_quantity_and_room_for_all_of_it(page):
+    page.live.set(t_ignite=35.88, dt=0.02, methods=("rkn4",), faults=True)
+    run = published.fly(35.88, dt=0.02)
+    fig, lines = page.live.fig, page.lines["rkn4"]
+    assert [ax.get_ylabel() for ax in fig.axes] == [
+        *("height [km]", "velocity [m/s]", "velocity [m/s]", "mass [t]", "thrust [MN]", "felt [g]"),
+    ]
+    drawn = [before.get_ydata() for before, _, _ in lines]
+    for n, values in enumerate((run.h / 1e3, run.v, run.v, run.mass / 1e3)):
+        np.testing.assert_array_equal(drawn[n], values)
+    right = try_out(Descent(), 60.2, 0.02, "rk4")
+    page.live.set(**START)
+    sound = [before.get_ydata() for before, _, _ in page.lines["rk4"]]  # up to its hover
+    assert max(sound[4]) == pytest.approx(7.6)
+    np.testing.assert_allclose(sound[5], right["felt"][: right["end"]] / 9.81, rtol=1e-12)
+    drawn[5] = sound[5]  # the other has no bound where the mass passes zero
+    for ax, *values in zip(fig.axes, drawn, sound, strict=True):
+        values = np.concatenate(values)
+        low, high = ax.get_ylim()
+        assert low < min(values) <= max(values) < high, "a mass below zero has to be seen"
+        assert high - low < 4 * np.ptp(values), "and not be lost"
+
+
+def test_velocity_is_drawn_over_a_height_that_falls_on_a_logarithmic_axis(page):
+    for n, ax in enumerate(page.live.fig.axes):
+        over_height = n == 2
+        assert ax.get_xscale() == ("log" if over_height else "linear")
+        assert ax.get_xlabel() == ("height [m]" if over_height else "t [s]")
+        assert ax.get_xlim() == ((2e5, 1e-3) if over_height else (0, 100))
+    page.live.set(t_ignite=60.3)  # a crash, with a last row on the ground
+    trial = try_out(Descent(), 60.3, 0.02, "rk4")
+    line = page.lines["rk4"][2][0]
+    np.testing.assert_array_equal(line.get_xdata()[:-1], trial["h"][:-1])
+    assert line.get_xdata()[-1] == 1e-3, "the ground stands at the end of the axis"
+    np.testing.assert_array_equal(line.get_ydata(), trial["v"])
 
 
 def in_a_browser(page, width, height, font, ratio=1):

@@ -12,9 +12,10 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 import pytest
+from matplotlib.figure import Figure
 from PIL import Image
 
-from hoverslam_lib import METHODS, course, plotting
+from hoverslam_lib import METHODS, Descent, course, fly, integrate, plotting
 
 
 @pytest.fixture
@@ -90,6 +91,62 @@ def test_figure_that_fails_is_not_shown_and_not_kept(shown):
         math.exp(1000)
     assert shown == []
     assert plt.get_fignums() == []
+
+
+# ---- primitives -----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("t_ignite", [59.5, None])
+def test_flight_is_drawn_in_its_colour_and_faint_from_its_hover_on(t_ignite):
+    flown = fly(Descent(), t_ignite, dt=0.5)
+    axes = Figure().subplots(2)
+    plotting.flight(axes, flown, color="#D55E00", name="too early")
+    for ax, values, name in zip(axes, (flown.h / 1000, flown.v), ("h [km]", "v [m/s]"), strict=True):
+        assert (ax.get_xlabel(), ax.get_ylabel()) == ("t [s]", name)
+        before, after = ax.lines
+        assert [line.get_color() for line in ax.lines] == ["#D55E00"] * 2
+        assert [line.get_alpha() for line in ax.lines] == [None, 0.3]
+        assert (before.get_label(), after.get_label()[0]) == ("too early", "_")  # the second is not in a legend
+        # the two meet at the hover, or at the end, and are the flight together
+        t = before.get_xdata()
+        assert t[-1] == after.get_xdata()[0] == (flown.hover[0] if flown.hover else flown.t[-1])
+        np.testing.assert_array_equal([*t, *after.get_xdata()[1:]], flown.t)
+        np.testing.assert_array_equal([*before.get_ydata(), *after.get_ydata()[1:]], values)
+    assert bool(flown.hover) == (t_ignite is not None)
+
+
+def test_flight_is_green_and_nameless_if_nothing_else_is_said_and_a_trajectory_is_one_too():
+    axes = Figure().subplots(2)
+    plotting.flight(axes, integrate(lambda t, h, v: -9.81, 100.0, 0.0, dt=0.5, t_end=2.0))
+    first, rest = axes[0].lines
+    assert first.get_color() == plotting.line("rk4")["color"]
+    assert first.get_label().startswith("_")
+    assert len(first.get_xdata()) == 5
+    assert len(rest.get_xdata()) == 1
+
+
+def test_name_stands_beside_its_line():
+    ax = Figure().subplots()
+    plotting.label(ax, 2.0, 3.0, "Euler", color="#D55E00")
+    plotting.label(ax, 2.0, 3.0, "exact", color="black", dx=-4, dy=7, ha="right")
+    first, second = ax.texts
+    assert (first.get_text(), first.xy, first.get_color()) == ("Euler", (2.0, 3.0), "#D55E00")
+    assert (first.get_position(), first.get_ha(), first.get_va()) == ((6, 0), "left", "center")
+    assert (second.get_text(), second.get_position(), second.get_ha()) == ("exact", (-4, 7), "right")
+    assert first.anncoords == second.anncoords == "offset points"
+
+
+def test_moment_is_an_upright_line_with_its_name_on_the_side_asked_for():
+    ax = Figure().subplots()
+    plotting.moment(ax, 60.2, "ignition")
+    plotting.moment(ax, 71.7, "touchdown", color="red", top=0.5, side="left")
+    assert [line.get_xdata()[0] for line in ax.lines] == [60.2, 71.7]
+    assert [line.get_color() for line in ax.lines] == [text.get_color() for text in ax.texts] == ["0.35", "red"]
+    first, second = ax.texts
+    assert (first.xy, first.xycoords, first.get_ha()) == ((60.2, 0.97), ("data", "axes fraction"), "left")
+    assert (second.xy, second.get_text(), second.get_ha()) == ((71.7, 0.5), "touchdown", "right")
+    assert first.get_position()[0] > 0 > second.get_position()[0]  # away from the line
+    assert first.get_va() == "top"
 
 
 # ---- the user's own settings ----------------------------------------------------------------------------------------

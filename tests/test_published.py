@@ -85,6 +85,17 @@ def test_what_the_tables_list_of_a_run_by_hand():
 # ---- the headline -----------------------------------------------------------------------------------------------
 
 
+def test_a_velocity_of_exactly_zero_is_at_rest():
+    t, h, v = np.array([0.0, 1.0, 2.0]), np.array([9.0, 7.0, 8.0]), np.array([-4.0, 0.0, 3.0])
+    assert published.listed(Trajectory(t, h, v), at_rest=True) == (7.0, 0.0)
+
+
+def test_a_table_is_in_the_order_of_its_times_and_methods():
+    index = published.optimisation_table(0.1).index
+    assert index.is_monotonic_increasing
+    assert index.names == ["t_ignite [s]", "method"]
+
+
 def test_the_landing_at_2_6_m_is_a_step_across_mass_zero():
     run = published.fly(**HEADLINE)
     i = int(np.searchsorted(run.t, 74.51))

@@ -463,6 +463,8 @@ def stride(tolerance, tries, f, start, t_end, *, ground=0.0):
         dt, h_most, v_most = min(dt, t_end - t), max(h_most, abs(h)), max(v_most, abs(v))
         try:
             h_end, v_end, h_error, v_error = dop8_and_error(f, t, h, v, dt)
+            if isinstance(h_end + v_end, complex):  # a look was where the power law of somebody's air has no value
+                raise ArithmeticError
             if v < 0 <= v_end or v > 0 >= v_end:  # drag, ∝ |v|·v, is not smooth there: the step must end on it
                 dt = _turn(f, t, h, v, dt, v_end)
                 h_end, v_end, h_error, v_error = dop8_and_error(f, t, h, v, dt)

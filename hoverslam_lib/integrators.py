@@ -167,8 +167,8 @@ def dop8_and_error(f, t, h, v, dt):
     dh, dv = _weighted(_dop853.B, *stages)
     h5, v5 = _weighted(_dop853.E5, *stages)
     h3, v3 = _weighted(_dop853.B3, *stages)
-    h_error = dt * h5 * h5 / (math.hypot(h5, 0.1 * (dh - h3)) or 1.0)
-    v_error = dt * v5 * v5 / (math.hypot(v5, 0.1 * (dv - v3)) or 1.0)
+    h_error = dt * h5 * h5 / ((h5**2 + (0.1 * (dh - h3)) ** 2) ** 0.5 or 1.0)
+    v_error = dt * v5 * v5 / ((v5**2 + (0.1 * (dv - v3)) ** 2) ** 0.5 or 1.0)
     return h + dt * dh, v + dt * dv, h_error, v_error
 
 

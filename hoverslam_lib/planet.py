@@ -54,6 +54,8 @@ class Planet:
 
     def air_density_law(self):
         """Return `air_density` as a function of h that has looked up what does not change: it is called often."""
+        if type(self).air_density is not Planet.air_density:  # a planet with an air of its own
+            return self.air_density
         surface_density, scale_height = self.surface_density, self._scale_height
 
         def air_density(h):

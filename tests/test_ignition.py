@@ -3,7 +3,7 @@ import math
 import pickle
 import re
 import time
-from dataclasses import replace
+from dataclasses import asdict, replace
 from functools import cache
 
 import numpy as np
@@ -596,3 +596,16 @@ def test_a_refusal_does_not_ask_where_the_unit_would_not_help(hopeless):
     with pytest.raises(NoSoftLanding) as caught:
         best_ignition(hopeless)
     assert "did you mean" not in str(caught.value)
+
+
+def test_an_air_that_ends_somewhere_is_no_hindrance():
+    """A step that is tried may look far above the start, where a power of a negative number is complex."""
+
+    class Standard(Planet):
+        def air_density(self, h):
+            return 1.225 * (1 - 0.0065 * h / 288.15) ** 4.25588
+
+    booster = replace(FALCON_9_LANDING_BURN, dry_mass=29e3, propellant_mass=5e3, drag_coefficient=0.8)
+    descent = Descent(booster, Standard(**asdict(EARTH)), 4.8e3, -318.0)
+    best = best_ignition(descent)
+    assert hover_height(descent, best.t_ignite, dt=0.01, method="dop8") == pytest.approx(0, abs=1e-8)

@@ -8,7 +8,7 @@ import numpy as np
 
 from hoverslam_lib.checks.answers import number, repeatable, takes, told_apart
 from hoverslam_lib.checks.feedback import Wrong
-from hoverslam_lib.descent import LANDING_BURN, SOFT_LANDING, STOPPED_TOO_HIGH, Descent, coast, fly
+from hoverslam_lib.descent import LANDING_BURN, SOFT_LANDING, STOPPED_TOO_HIGH, Descent, coast, fly, walk
 from hoverslam_lib.ignition import best_ignition
 from hoverslam_lib.integrators import rk4
 
@@ -58,7 +58,7 @@ def _world(errors):
     )
     planet = replace(PLAN.planet, surface_density=(1 + air) * PLAN.planet.surface_density)
     whole = Descent(booster, planet, PLAN.height + dh, PLAN.velocity + dv)
-    _, h, v = coast(whole, _lit().t_ignite + delay, dt=2.0, step=rk4)[0][-1]
+    _, h, v = coast(whole, _lit().t_ignite + delay, partial(walk, rk4, dt=2.0))[0][-1]
     return replace(whole, height=h, velocity=v)
 
 

@@ -174,7 +174,7 @@ def best_ignition(descent):
     require_one_descent(descent)
     _require_thrust(descent)
     tries = iter(range(MOST_TRIES))
-    # roughly first, since a search takes some ten burns; then to what rounding leaves of a flight of a hundred steps
+    # roughly first: most burns of a search only narrow it down
     coarse, fine = partial(stride, 1e-5, tries), partial(stride, 1e-12, tries)
     try:
         fall = _whole_fall(descent, fine)
@@ -328,8 +328,7 @@ def _bracket(missed_by, fall, deepest):
     """Two ignition times between which the hover height changes sign, and the hover heights there."""
     high, g_high = fall[-1][0], missed_by(fall[-1][0])
     t_top = next(t for t, _, v in fall if v <= 0)
-    # back from the top, through an ascent if any: in eighths, as the hover height has few turns on the way
-    for t in sorted({t_top * k / 8 for k in range(9)}, reverse=True):
+    for t in sorted({t_top * k / 8 for k in range(9)}, reverse=True):  # back from the top, through an ascent if any
         g = missed_by(t)
         if g >= 0:
             return t, high, g, g_high

@@ -458,7 +458,7 @@ def stride(tolerance, tries, f, start, t_end, *, ground=0.0):
     t, h, v = start
     a, h_most, v_most = f(t, h, v), 1.0, 1.0
     yield t, h, v, "stop" if v == 0 <= a else None
-    dt = (1 + abs(v)) / (1e-9 + 4 * abs(a))  # v changes by a sixteenth
+    dt = (1 + abs(v)) / (1e-9 + 4 * abs(a))  # v changes by a quarter
     for _ in tries:
         dt, h_most, v_most = min(dt, t_end - t), max(h_most, abs(h)), max(v_most, abs(v))
         try:

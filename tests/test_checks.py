@@ -427,6 +427,14 @@ def test_answer_that_never_ends_is_stopped_without_a_timer_of_signals(function, 
     _is_stopped(function, monkeypatch)
 
 
+def test_answer_that_ends_in_time_has_nothing_thrown_at_it(monkeypatch):
+    """Nor taken back: after that, Python 3.12 runs by half slower (see tests/benchmarks/checks.py)."""
+    thrown = []
+    monkeypatch.setattr(stopping, "_throw", lambda *what: thrown.append(what))
+    assert stopping.limited(lambda: 3.0, 60.0) == 3.0
+    assert thrown == []
+
+
 def _is_stopped(function, monkeypatch):
     monkeypatch.setattr(feedback, "TIME_LIMIT", 0.3)
     before = [stopping.signal.getsignal(number) for number in (stopping.signal.SIGINT, stopping.signal.SIGTERM)]

@@ -32,13 +32,15 @@ def limited(work, seconds):
         return work()
     timer = hasattr(signal, "setitimer")
     number = signal.SIGALRM if timer else signal.SIGTERM
-    before, tracing, armed, waiting = signal.getsignal(number), sys.gettrace(), [True], threading.Lock()
+    before, tracing, waiting = signal.getsignal(number), sys.gettrace(), threading.Lock()
+    armed, followed = [True], []
 
     def ring(number, frame):
         """Throw the answer out, and from the second time on, because it catches that, follow it line by line."""
         if armed:
             armed.append(True)
             if len(armed) > 2:
+                followed.append(True)
                 while frame.f_code is not limited.__code__:
                     frame.f_trace = _follow
                     frame = frame.f_back
@@ -62,8 +64,13 @@ def limited(work, seconds):
                         signal.setitimer(signal.ITIMER_REAL, 0)
                     if waiting.locked():
                         waiting.release()
-                    sys.settrace(tracing)
-                    _throw(threading.get_ident(), None)
+                    if followed:
+                        sys.settrace(tracing)
+                        followed.clear()
+                        # what may be on its way is replaced and waited for: only its arrival lets Python run as before
+                        _throw(threading.get_ident(), id(TimeIsUp))
+                        while True:
+                            pass
                     break
                 except TimeIsUp:
                     continue

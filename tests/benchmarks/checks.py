@@ -1,4 +1,5 @@
-"""How long a check of a right answer takes, for every exercise, the first time and at best.
+"""How long a check of a right answer takes, for every exercise, the first time and at best; and whether Python runs as
+fast after checks as before.
 
 ``python tests/benchmarks/checks.py``
 """
@@ -46,9 +47,20 @@ def solved(path):
         yield number, times[0], min(times)
 
 
+def count():
+    """How long Python takes to count [s], at best."""
+    times = []
+    for _ in range(5):
+        start, n = time.perf_counter(), 0
+        while n < 1_000_000:
+            n += 1
+        times.append(time.perf_counter() - start)
+    return min(times)
+
+
 def main():
     os.chdir(tempfile.mkdtemp())
-    slow = 0
+    slow, before = 0, count()
     for path in course.lessons():
         if not Path(path).name[0].isdigit():
             continue
@@ -59,7 +71,9 @@ def main():
             print(
                 f"{number:5} {1e3 * first:7.1f} {1e3 * best:7.1f} ms {f'more than {LIMIT} s' if first > LIMIT else ''}"
             )
-    return slow
+    after = count() / before
+    print(f"Python counts in {after:.2f} times as long as before the checks (limit 1.2)")
+    return slow + (after > 1.2)
 
 
 if __name__ == "__main__":

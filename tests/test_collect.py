@@ -115,7 +115,7 @@ def tables(tmp_path_factory):
     ending = {"0.1": right("0.1") + "\nmy_energy_factor = 1\nimport os\nos._exit(3)"}
     put(folder / "Ends Python", notebook(FIRST, ending), notebook(SECOND))
     (folder / "Rar.rar").write_bytes(b"Rar!")
-    done = list(collect.collect(folder, LESSONS, [FIRST, SECOND], cell_limit=10, notebook_limit=120))
+    done = list(collect.collect(folder, LESSONS, [FIRST, SECOND], cell_limit=5, notebook_limit=120))
     assert [result.student for result in done] == sorted((r.student for r in done), key=str.casefold)
     return [{row.pop("student"): row for row in read(folder / name)} for name in collect.TABLES]
 
@@ -129,7 +129,7 @@ BOTH = "no notebook of lesson 0, 2"
 EXPECTED = {
     "Ada": ("✔ ✔ ✔ ✔", ""),
     "Béla Groß": ("○ ✘ 0 of 4 ○ ○", "2.1 “added up”"),
-    "Never ends": ("○ ✘ ✔ ✔", "2.1 stopped after 10 s"),
+    "Never ends": ("○ ✘ ✔ ✔", "2.1 stopped after 5 s"),
     "One missing": ("✔ – – –", "no notebook of lesson 2"),
     "Other course": ("– – – –", f"{{}} is no lesson of the course; {{}} is no lesson of the course; {BOTH}"),
     "Prints": ("○ ✔ ✔ ✔", ""),

@@ -30,7 +30,7 @@ from scipy.optimize import brentq
 from screen import shown as screen_shows
 from test_guide import settings
 
-from hoverslam_lib import FALCON_9, Descent, FreeFall, course, fly, live, published, recording
+from hoverslam_lib import FALCON_9, Descent, FreeFall, book, course, fly, live, published, recording
 from hoverslam_lib.live import Live, on_grid, verdict
 from hoverslam_lib.mission_control import Methods
 
@@ -361,7 +361,7 @@ def test_verdict_says_how_a_flight_ended_softly():
 
 @pytest.fixture(params=NOTEBOOKS, ids=lambda path: path.stem, scope="module")
 def lesson(request, tmp_path_factory):
-    """The live figures of a notebook, with all its cells run, in this process."""
+    """The live figures of a notebook, with its cells run down to the last of them, in this process."""
     found = []
     patch = pytest.MonkeyPatch()
     patch.setattr(Live, "show", lambda self: found.append(self))
@@ -369,7 +369,7 @@ def lesson(request, tmp_path_factory):
     patch.chdir(tmp_path_factory.mktemp("notebook"))
     with plt.rc_context():
         namespace = {"display": lambda *args, **kwargs: None, "__name__": "__main__"}
-        for cell in nbformat.read(request.param, as_version=4).cells:
+        for cell in nbformat.read(request.param, as_version=4).cells[: book.live_cells(request.param)[-1] + 1]:
             if cell.cell_type == "code" and "raises-exception" not in cell.metadata.get("tags", []):
                 exec(compile(cell.source, request.param.name, "exec"), namespace)
         yield found

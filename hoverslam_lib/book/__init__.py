@@ -139,7 +139,7 @@ def record_all(paths):
 
 def _kept(path):
     """The files of a notebook's recordings: their names change with whatever the figures depend on."""
-    cells = _live_cells(path)
+    cells = live_cells(path)
     if not cells:
         return {}
     digest = hashlib.sha256()
@@ -156,8 +156,8 @@ def _kept(path):
     return {f"{path.stem}-{n}": RECORDINGS / f"{path.stem}-{n}-{key}.js" for n in range(len(cells))}
 
 
-def _live_cells(path):
-    """Numbers of the cells that show a live figure, known by its still."""
+def live_cells(path):
+    """Numbers of the cells of a notebook that show a live figure, known by its still; counted from 0, a list of int."""
     cells = nbformat.read(path, as_version=4).cells
     return [n for n, cell in enumerate(cells) if any("hoverslam-still" in text for text in _html(cell))]
 
@@ -172,7 +172,7 @@ def _record(path):
 
     shown = []
     Live.show = lambda live: shown.append(recording.record(live))
-    kept, cells = _kept(path), nbformat.read(path, as_version=4).cells[: _live_cells(path)[-1] + 1]
+    kept, cells = _kept(path), nbformat.read(path, as_version=4).cells[: live_cells(path)[-1] + 1]
     names, before = {"__name__": "__main__"}, Path.cwd()
     with tempfile.TemporaryDirectory() as scratch, contextlib.redirect_stdout(io.StringIO()):
         os.chdir(scratch)

@@ -116,7 +116,7 @@ def test_first_sentence_is_that_of_the_stored_still(recordings):
         if path.stem == "mission_control":  # its page shows the paper's own method
             continue
         cells = nbformat.read(path, as_version=4).cells
-        for n, cell in enumerate(book._live_cells(path)):
+        for n, cell in enumerate(book.live_cells(path)):
             record = recordings[f"{path.stem}-{n}"]
             first = number_of(record, [control["start"] for control in record["controls"]])
             assert record["sentences"][first] in [output.data["text/plain"] for output in cells[cell].outputs]
@@ -229,7 +229,7 @@ def test_pages_are_those_that_are_looked_at_and_small(made, recordings):
     assert [path.stem for path in pages] == sorted([*NAMES, "search"])
     assert max(path.stat().st_size for path in pages) <= 1_000_000
     assert not any("Author name not set" in path.read_text("utf-8") for path in pages)
-    live = [path.stem for path in course.lessons() if book._live_cells(path)]
+    live = [path.stem for path in course.lessons() if book.live_cells(path)]
     assert sorted({name.rpartition("-")[0] for name in recordings}) == sorted(live)
     assert max(path.stat().st_size for path in (made / "recordings").iterdir()) <= 2_500_000
     assert sum(path.stat().st_size for path in made.rglob("*") if path.is_file()) <= 60_000_000

@@ -11,7 +11,7 @@ import pandas as pd
 import psutil
 import pytest
 
-from hoverslam_lib import course
+from hoverslam_lib import book, course
 from hoverslam_lib.live import STILL
 
 pytest.importorskip("playwright.sync_api", reason="playwright is missing: pip install -e '.[dev]'")
@@ -114,9 +114,13 @@ CONTROLS = ", ".join(f".hoverslam-live {control}" for control in (".noUi-handle"
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """A copy of the notebooks, and the scratch ones: nothing in the checkout is written to."""
+    """A copy of the notebooks, down to their last live figure, and the scratch ones: the checkout is not written to."""
     copy = tmp_path_factory.mktemp("browser") / "notebooks"
     shutil.copytree(course.NOTEBOOKS, copy)
+    for path in course.lessons(LIVE):
+        notebook = nbformat.read(path, as_version=4)
+        notebook.cells = notebook.cells[: book.live_cells(path)[-1] + 1]
+        nbformat.write(notebook, copy / path.name)
     for name, cells in SCRATCH.items():
         notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(source) for source in cells])
         notebook.metadata.kernelspec = {"name": "python3", "display_name": "Python 3", "language": "python"}

@@ -47,7 +47,7 @@ TESTS = {  # the files test_….py in the order in which they are tried, and aft
     "ensemble": "ensemble properties",
     "ignition": "ignition properties ensemble",
     "integrators": "integrators",
-    "live": "live recording | not lesson and not corner and not memory",
+    "live": "live recording",
     "metrics": "metrics",
     "mission_control": "mission_control",
     "oscillator": "oscillator_planet_booster",

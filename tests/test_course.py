@@ -7,6 +7,7 @@ import shutil
 import subprocess
 import sys
 import zipfile
+from importlib import metadata
 from pathlib import Path
 
 import nbformat
@@ -460,3 +461,17 @@ def test_copy_that_withholds_solutions_says_to_ask_the_instructor(folder, tmp_pa
     assert capsys.readouterr().out.splitlines()[-1] == f"wrote {Path('copy') / checks.WITHHELD}"
     monkeypatch.chdir(copied)
     assert repr(checks.show_solution("2.1")) == "The solution to exercise 2.1 is withheld here: ask your instructor."
+
+
+def test_what_is_installed_is_held_against_the_list_and_how_to_mend_it_is_said(tmp_path, monkeypatch):
+    assert course.environment_problems() == []
+    monkeypatch.setattr(course, "NOTEBOOKS", tmp_path / "notebooks")
+    assert course.environment_problems()[0].endswith("install the library from a checkout of the course")
+    listed = ["# why", "numpy>=1.0,<2", "scipy>=1.15,<3", "pytest>=99.1,<100", "no-such-thing>=1,<2", "-e .", ""]
+    (tmp_path / "environment.txt").write_text("\n".join(listed))
+    newer, older, missing, mend = course.environment_problems()
+    assert newer == f"numpy {metadata.version('numpy')} is installed; the course needs at least 1.0 and less than 2"
+    assert older == f"pytest {pytest.__version__} is installed; the course needs at least 99.1 and less than 100"
+    assert missing == "no-such-thing is missing"
+    assert mend.startswith(f"To mend this, run in {tmp_path}: ")
+    assert mend.endswith(" -m pip install -r environment.txt")

@@ -12,7 +12,7 @@ from hoverslam_lib._roots import bracketed_root
 from hoverslam_lib.booster import FALCON_9, FALCON_9_LANDING_BURN, Booster
 from hoverslam_lib.integrators import dop8, dop8_and_error, step_function
 from hoverslam_lib.planet import EARTH, Planet
-from hoverslam_lib.trajectory import time_grid
+from hoverslam_lib.trajectory import require_state, time_grid
 
 SOFT_SPEED = 2.0
 """Touching down at this speed or slower is a soft landing [m/s]."""
@@ -160,9 +160,11 @@ def speed_after_fall(planet, h, v=0.0):
 
     Raises
     ------
-    ValueError
-        If h is below 0.
+    ValueError, TypeError
+        If h is below 0, or `planet` is no Planet.
     """
+    if not isinstance(planet, Planet):
+        raise TypeError(f"planet must be a Planet; got {planet!r}")
     if np.any(np.less(h, 0)):
         raise ValueError(f"h must be at least 0 [m]; got {h!r}")
     squared = v * v + 2 * planet.gravity(0.0) * h
@@ -304,11 +306,20 @@ def fly(descent, t_ignite, *, dt=0.02, method="rk4", controller=None):
     at_least = min(descent.shortest_fall(), t_coast + descent.booster.burn_duration)
     if at_least < math.inf:
         _validate.step_count(at_least, dt)
-    step = step_function(method)
+    step = step_for(descent, method, dt)
     coasted, end = coast(descent, t_coast, partial(walk, step, dt=dt))
     if end == "space":
         raise never_comes_down(*coasted[-1][1:])
     return finish(descent, t_ignite, np.array(coasted), end, controller, dt=dt, step=step)
+
+
+def step_for(descent, method, dt):
+    """The step function of a method; one of one's own is tried, so that what is wrong with it is said by name."""
+    step = step_function(method)
+    if callable(method):
+        with suppress(OverflowError):  # dt is too large for it: who takes the steps says so
+            require_state(step, descent.acceleration(), 0.0, float(descent.height), float(descent.velocity), dt)
+    return step
 
 
 def never_comes_down(h, v):

@@ -11,7 +11,17 @@ import numpy as np
 
 from hoverslam_lib import _validate
 from hoverslam_lib._roots import bracketed_root
-from hoverslam_lib.descent import Descent, TooManyStepsError, coast, finish, fly, require_one_descent, stride, walk
+from hoverslam_lib.descent import (
+    Descent,
+    TooManyStepsError,
+    coast,
+    finish,
+    fly,
+    require_one_descent,
+    step_for,
+    stride,
+    walk,
+)
 from hoverslam_lib.integrators import dop8, step_function
 from hoverslam_lib.trajectory import rounding
 
@@ -97,7 +107,7 @@ def hover_height(descent, t_ignite, *, dt=0.02, method="rk4"):
     dt = _validate.number("dt", dt, "s", above=0)
     t_ignite = _validate.number("t_ignite", t_ignite, "s", least=0)
     _validate.step_count(min(t_ignite, descent.shortest_fall()), dt)
-    step = step_function(method)
+    step = step_for(descent, method, dt)
     _require_thrust(descent)
     march = partial(walk, step, dt=dt)
     nodes, end = coast(descent, t_ignite, march)
@@ -223,6 +233,8 @@ def ignition_table(t_ignite, *, dt, methods=("rk4", "symplectic_euler"), descent
     descent = Descent() if descent is None else descent
     if not isinstance(t_ignite, Iterable) or isinstance(t_ignite, str):
         raise TypeError(f"t_ignite must be a collection of ignition times [s]; got {t_ignite!r}")
+    if not isinstance(methods, Iterable) or isinstance(methods, str):
+        raise TypeError(f"methods must be a collection of methods, such as ('rk4',); got {methods!r}")
     times, methods = list(t_ignite), list(methods)
     falls = [FreeFall(descent, dt=dt, method=method) for method in methods]
     rows = []
@@ -294,7 +306,7 @@ def _solve(descent, fall, march, near=None):
     if near and abs(missed_by(t_ignite)) > NEAR_ZERO * descent.height:  # steep, or no root but a jump
         t_ignite = bracketed_root(missed_by, *bracket)
         if abs(missed_by(t_ignite)) > NEAR_ZERO * descent.height:
-            # next to the jump rounding decides on which side a burn ends
+            # next to the jump rounding decides on which side a burn ends: a little before it, and not too little
             before = (missed_by(max(t_ignite - s * t_end, 0.0)) for s in (1e-12, 1e-9, 1e-6))
             raise _too_weak(t_ignite, next((height for height in before if height > 0), bracket[2]))
     h, v, t_touchdown, _ = lit(t_ignite)

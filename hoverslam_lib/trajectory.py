@@ -117,7 +117,7 @@ def integrate(f, h0, v0, *, dt, t_end, t0=0.0, method="rk4"):
     except (TypeError, ValueError):
         for moment in ((ts[0], hs[0], vs[0]), (t, h, v)):
             _require_acceleration(f, *moment)
-            _require_state(step, f, *moment, dt)
+            require_state(step, f, *moment, dt)
         raise
     if np.iscomplexobj(run.v):
         t = next(t for t, v in zip(ts, vs, strict=True) if np.iscomplexobj(v))
@@ -134,7 +134,7 @@ def _require_acceleration(f, t, h, v):
         raise TypeError(f"f(t, h, v) must return the acceleration [m/s²], {shape}; got {said!r}{missing}") from None
 
 
-def _require_state(step, f, t, h, v, dt):
+def require_state(step, f, t, h, v, dt):
     """Raise if it is a step function of one's own that spoils a step from (t, h, v)."""
     made = step(f, t, h, v, dt)
     if not isinstance(made, tuple | list) or [np.shape(x) for x in made] != 2 * [np.shape(h)]:

@@ -38,7 +38,7 @@ TESTS = {  # the files test_….py in the order in which they are tried, and aft
     "_roots": "roots",
     "_validate": "trajectory oscillator_planet_booster ensemble ignition descent | bad or refused or digits or at_once",
     "animation": "animation",
-    "book": "course notebooks browser/test_book",
+    "book": "book_pages guide",
     "booster": "oscillator_planet_booster ensemble | oscillator or columns",
     "collect": "collect",
     "course": "course notebooks lesson_shape | not real and not handed and not pytest",

@@ -49,6 +49,7 @@ from hoverslam_lib import (
     plotting,
     published,
     rmse,
+    speed_after_fall,
 )
 from hoverslam_lib.checks import feedback, record, stopping
 from hoverslam_lib.mission_control import MissionControl, stroke, try_out
@@ -261,6 +262,21 @@ CALLS = {
     "step of one number": (lambda: at_once(method=lambda f, t, h, v, dt: h), TypeError, PAIR + "1.0"),
     "step of three": (lambda: at_once(method=lambda f, t, h, v, dt: (t, h, v)), TypeError, PAIR + "(0.0, 1.0, 0.0)"),
     "step of lists": (lambda: at_once(method=lambda f, t, h, v, dt: ([h], [v])), TypeError, PAIR + "([1.0], [0.0])"),
+    "step without return, flown": (
+        lambda: fly(PAPER, 60.0, method=lambda f, t, h, v, dt: None),
+        TypeError,
+        PAIR + "None",
+    ),
+    "step without return, hovering": (
+        lambda: hover_height(PAPER, 60.0, method=lambda f, t, h, v, dt: None),
+        TypeError,
+        PAIR + "None",
+    ),
+    "step of one number, falling": (
+        lambda: FreeFall(PAPER, method=lambda f, t, h, v, dt: h),
+        TypeError,
+        PAIR + "150000.0",
+    ),
     # the descent
     "booster and planet swapped": (
         lambda: Descent(EARTH, FALCON_9),
@@ -290,6 +306,13 @@ CALLS = {
     ),
     "a table of times": (lambda: fly_all(PAPER, np.ones((2, 2))), TypeError, "t_ignite must be a finite number"),
     "a best of two": (lambda: best_ignition(PAPER, 60.0), TypeError, "takes 1 positional argument but 2 were given"),
+    "no methods": (
+        lambda: ignition_table([60.0], dt=0.1, methods=None),
+        TypeError,
+        "methods must be a collection of methods, such as ('rk4',); got None",
+    ),
+    "one method": (lambda: ignition_table([60.0], dt=0.1, methods="rk4"), TypeError, "such as ('rk4',); got 'rk4'"),
+    "g for a planet": (lambda: speed_after_fall(9.81, 2.0), TypeError, "planet must be a Planet; got 9.81"),
     # the paper's programs and the tables
     "no run": (lambda: published.listed(None), TypeError, "run must be a Trajectory or a Flight; got None"),
     "another table": (

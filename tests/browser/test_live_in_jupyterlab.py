@@ -53,13 +53,24 @@ WIDGETS = "len(__import__('ipywidgets').widgets.widget._instances)"
 
 
 @pytest.fixture(scope="module")
-def lab(chromium, folder):
-    """JupyterLab, opened once."""
+def lab_server(folder):
     with driver.server("lab", folder, tempfile.mkdtemp(dir=folder.parent)) as address:
-        page = chromium.new_page(viewport={"width": 1280, "height": 1000})
-        driver.open_lab(page, address)
-        yield page
-        page.close()
+        yield address
+
+
+@pytest.fixture(scope="module")
+def notebook_7(folder):
+    with driver.server("notebook", folder, tempfile.mkdtemp(dir=folder.parent)) as address:
+        yield address
+
+
+@pytest.fixture(scope="module")
+def lab(chromium, lab_server):
+    """JupyterLab, opened once."""
+    page = chromium.new_page(viewport={"width": 1280, "height": 1000})
+    driver.open_lab(page, lab_server)
+    yield page
+    page.close()
 
 
 @pytest.fixture(params=LIVE)
@@ -114,6 +125,9 @@ def test_notebook_shows_a_still_before_it_is_run_and_follows_every_control_after
     assert driver.run_all(lesson)["errors"] == []
     (figure,) = figures(lesson)
     assert not figure.state()["text"].startswith("Not possible")
+    if name in ("01_oscillator_and_error", "09_ignition_tables"):
+        found = axe(lesson, include=[[".jp-OutputArea-output"]])
+        assert [(rule, html) for rule, html in found if rule != "empty-table-header"] == []  # that is pandas'
     check_figure(figure, said=name not in NOT_SAID)
     assert lesson.evaluate(driver.OUTPUTS)["errors"] == []
     assert visible_pictures(lesson) == 1
@@ -173,20 +187,16 @@ def test_figure_whose_kernel_is_gone_says_so_when_it_is_moved_and_one_that_is_bu
     status.filter(has_text="The kernel is gone: run this cell again.").wait_for(timeout=10_000)
 
 
-def test_saved_notebook_shows_its_stills_the_next_day_in_a_new_server(chromium, folder):
-    for application in ("lab", "notebook"):
-        with driver.server("lab", folder, tempfile.mkdtemp(dir=folder.parent)) as address:
+def test_saved_notebook_shows_its_stills_the_next_day_in_a_new_server(chromium, folder, lab, notebook_7):
+    driver.open_notebook(lab, "twice.ipynb")
+    assert driver.run_all(lab)["errors"] == []
+    assert len(figures(lab)) == visible_pictures(lab) == 3
+    driver.save_notebook(lab)
+    driver.close_notebook(lab)
+    with driver.server("lab", folder, tempfile.mkdtemp(dir=folder.parent)) as another_lab:
+        for address in (f"{another_lab}/lab/tree/twice.ipynb", f"{notebook_7}/notebooks/twice.ipynb"):
             page = chromium.new_page(viewport={"width": 1280, "height": 1000})
-            driver.open_lab(page, address)
-            driver.open_notebook(page, "twice.ipynb")
-            assert driver.run_all(page)["errors"] == []
-            assert len(figures(page)) == visible_pictures(page) == 3
-            driver.save_notebook(page)
-            page.close()
-        with driver.server(application, folder, tempfile.mkdtemp(dir=folder.parent)) as address:
-            page = chromium.new_page(viewport={"width": 1280, "height": 1000})
-            path = {"lab": "lab/tree", "notebook": "notebooks"}[application]
-            page.goto(f"{address}/{path}/twice.ipynb?token={driver.TOKEN}")
+            page.goto(f"{address}?token={driver.TOKEN}")
             page.wait_for_function(driver.IDLE, timeout=60_000)
             check_stills(page, 3)
             assert driver.run_all(page)["errors"] == []
@@ -228,55 +238,44 @@ def test_papers_landing_on_one_click_in_jupyterlab(lesson):
     check_papers_landing(lesson)
 
 
-@pytest.mark.parametrize("lesson", ["01_oscillator_and_error", "09_ignition_tables"], indirect=True)
-def test_axe_finds_nothing_in_the_outputs_of_a_lesson(lesson):
-    assert driver.run_all(lesson)["errors"] == []
-    figures(lesson)
-    found = axe(lesson, include=[[".jp-OutputArea-output"]])
-    assert [(rule, html) for rule, html in found if rule != "empty-table-header"] == []  # that is pandas'
-
-
 @pytest.mark.parametrize("name", ["11_auditing_the_paper", "mission_control"])
-def test_every_control_follows_keys_in_notebook_7(chromium, folder, name):
-    with driver.server("notebook", folder, tempfile.mkdtemp(dir=folder.parent)) as address:
-        page = chromium.new_page(viewport={"width": 1280, "height": 1000})
-        driver.open_alone(page, address, f"{name}.ipynb")
-        assert driver.run_all(page)["errors"] == []
-        (figure,) = figures(page)
-        check_figure(figure, said=name not in NOT_SAID)
-        page.close()
+def test_every_control_follows_keys_in_notebook_7(chromium, notebook_7, name):
+    page = chromium.new_page(viewport={"width": 1280, "height": 1000})
+    driver.open_alone(page, notebook_7, f"{name}.ipynb")
+    assert driver.run_all(page)["errors"] == []
+    (figure,) = figures(page)
+    check_figure(figure, said=name not in NOT_SAID)
+    page.close()
 
 
-def test_lesson_on_a_phone_has_room_for_a_thumb_and_cuts_nothing(chromium, folder):
-    with driver.server("notebook", folder, tempfile.mkdtemp(dir=folder.parent)) as address:
-        context = chromium.new_context(viewport={"width": 390, "height": 844}, device_scale_factor=3)
-        page = context.new_page()
-        driver.open_alone(page, address, "09_ignition_tables.ipynb")
-        assert driver.run_all(page)["errors"] == []
-        (figure,) = figures(page)
-        figure.where.scroll_into_view_if_needed()
-        figure.wait(SHARP, 3, timeout=10_000)
-        assert min(figure.where.evaluate(WIDTHS)) >= 150
-        assert figure.where.evaluate(CUT) == []
-        context.close()
+def test_lesson_on_a_phone_has_room_for_a_thumb_and_cuts_nothing(chromium, notebook_7):
+    context = chromium.new_context(viewport={"width": 390, "height": 844}, device_scale_factor=3)
+    page = context.new_page()
+    driver.open_alone(page, notebook_7, "09_ignition_tables.ipynb")
+    assert driver.run_all(page)["errors"] == []
+    (figure,) = figures(page)
+    figure.where.scroll_into_view_if_needed()
+    figure.wait(SHARP, 3, timeout=10_000)
+    assert min(figure.where.evaluate(WIDTHS)) >= 150
+    assert figure.where.evaluate(CUT) == []
+    context.close()
 
 
-def test_picture_is_the_kernels_to_the_pixel_and_sharp_on_a_dense_screen(chromium, folder):
-    with driver.server("lab", folder, tempfile.mkdtemp(dir=folder.parent)) as address:
-        context = chromium.new_context(viewport={"width": 1280, "height": 1000}, device_scale_factor=2)
-        page = context.new_page()
-        driver.open_lab(page, address)
-        driver.open_notebook(page, "twice.ipynb")
-        assert driver.run_all(page)["errors"] == []
-        figure = figures(page)[0]
-        figure.where.scroll_into_view_if_needed()
-        figure.wait(SHARP, 2, timeout=10_000)
-        for _ in range(3):
-            before = figure.state()["text"]
-            press(page, figure.slider(), "ArrowRight", 40)
-            figure.wait(CHANGED, "text", before)
-            figure.wait(AGREES, 0)
-            wanted = page.evaluate(ASK, KERNELS_PIXELS).strip("'")
-            page.wait_for_timeout(300)
-            assert figure.where.evaluate(PIXELS) == wanted
-        context.close()
+def test_picture_is_the_kernels_to_the_pixel_and_sharp_on_a_dense_screen(chromium, lab_server):
+    context = chromium.new_context(viewport={"width": 1280, "height": 1000}, device_scale_factor=2)
+    page = context.new_page()
+    driver.open_lab(page, lab_server)
+    driver.open_notebook(page, "twice.ipynb")
+    assert driver.run_all(page)["errors"] == []
+    figure = figures(page)[0]
+    figure.where.scroll_into_view_if_needed()
+    figure.wait(SHARP, 2, timeout=10_000)
+    for _ in range(3):
+        before = figure.state()["text"]
+        press(page, figure.slider(), "ArrowRight", 40)
+        figure.wait(CHANGED, "text", before)
+        figure.wait(AGREES, 0)
+        wanted = page.evaluate(ASK, KERNELS_PIXELS).strip("'")
+        page.wait_for_timeout(300)
+        assert figure.where.evaluate(PIXELS) == wanted
+    context.close()

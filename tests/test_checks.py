@@ -77,8 +77,9 @@ def solutions(lesson):
 
 @pytest.fixture(autouse=True)
 def _folder(tmp_path, monkeypatch):
-    """A student's folder, and no other."""
+    """A student's folder, and no other; and time enough: how long a check takes is measured in a benchmark."""
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(feedback, "TIME_LIMIT", 60.0)
     monkeypatch.setattr(record.platformdirs, "user_data_dir", lambda name: str(tmp_path / "user"))
     for exercise in [*checks.EXERCISES.values(), doubled]:
         exercise.tries.clear()
@@ -400,9 +401,7 @@ def test_answer_that_never_ends_is_stopped(function, monkeypatch):
 
 
 @pytest.mark.skipif(not hasattr(stopping.signal, "setitimer"), reason="no timer of signals")
-def test_judge_may_have_a_time_limit_of_its_own(monkeypatch):
-    monkeypatch.setattr(feedback, "TIME_LIMIT", 60.0)
-
+def test_judge_may_have_a_time_limit_of_its_own():
     @check_of
     def patient(function):
         yield function(1.0)

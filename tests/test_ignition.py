@@ -510,7 +510,7 @@ BAD_TABLES = [
     ({"t_ignite": ["60"]}, TypeError, "t_ignite"),
     ({"dt": 0.0}, ValueError, r"dt must be a finite number greater than 0 \[s\]"),
     ({"methods": ("rk5",)}, ValueError, "'rk5'.*explicit_euler.*dop8"),
-    ({"methods": "rk4"}, ValueError, "'r'|'rk4'"),
+    ({"methods": "rk4"}, TypeError, r"methods must be a collection of methods, such as \('rk4',\); got 'rk4'"),
     ({"descent": FALCON_9}, TypeError, "descent must be a Descent"),
 ]
 

@@ -42,13 +42,17 @@ SCRATCH = {
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """A copy of the notebooks, down to their last live figure, and the scratch ones: the checkout is not written to."""
+    """A copy of the notebooks, without their texts and what follows their last live figure, and the scratch ones."""
     copy = tmp_path_factory.mktemp("browser") / "notebooks"
     shutil.copytree(course.NOTEBOOKS, copy)
     for path in course.lessons():
         for last in book.live_cells(path)[-1:]:
             notebook = nbformat.read(path, as_version=4)
-            notebook.cells = notebook.cells[: last + 1]
+            notebook.cells = [
+                cell
+                for cell in notebook.cells[: last + 1]
+                if cell.cell_type == "code" or path.stem == "mission_control"
+            ]
             nbformat.write(notebook, copy / path.name)
     for name, cells in SCRATCH.items():
         notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(source) for source in cells])

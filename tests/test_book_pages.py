@@ -128,6 +128,19 @@ def test_kept_recording_is_another_as_soon_as_what_leads_to_the_figure_is(lesson
     assert key() != second
 
 
+def test_kept_recording_is_another_with_another_library_but_not_with_another_command_line(
+    lesson, monkeypatch, tmp_path
+):
+    (tmp_path / "hoverslam_lib").mkdir()
+    monkeypatch.setattr(book, "PROJECT", tmp_path)
+    keys = []
+    for name in ("integrators.py", "style.mplstyle", "course.py", "collect.py", "notes.txt"):
+        (tmp_path / "hoverslam_lib" / name).write_text("# changed")
+        keys += book._kept(lesson).values()
+    assert len(set(keys[:2])) == 2
+    assert len(set(keys[1:])) == 1
+
+
 def test_lesson_without_a_figure_needs_no_recording(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(book, "RECORDINGS", tmp_path / "kept")
     nbformat.write(nbformat.v4.new_notebook(cells=[code("1 / 0", PICTURE)]), tmp_path / "00_plain.ipynb")

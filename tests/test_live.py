@@ -123,6 +123,7 @@ def test_set_draws_once(dot, monkeypatch):
 def test_page_holds_a_still_with_its_numbers_and_the_widget_in_an_output_of_its_own(dot, shown):
     dot.show()
     still, widget = shown
+    assert "hoverslam-live" in dot.widget._dom_classes, "by which its style and its page know it"
     assert 'alt="the dot is at 5.0, 5.0"' in still["text/html"]
     assert live.STILL in still["text/html"]
     assert still["text/plain"] == dot.text

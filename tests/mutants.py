@@ -69,6 +69,11 @@ EQUIVALENT = {
     ): "all rows are pairs",
     ("book", "key = digest.hexdigest()[:16]", "key = digest.hexdigest()[:17]"): "longer than it need be, either way",
     ("recording", 'names[-1] = "dt"', 'names[+1] = "dt"'): "there are two names where a third control is dt",
+    (
+        "animation",
+        "shown = dict(zip(times.tolist(), zip(read_at, pace(times, duration), strict=True), strict=True))",
+        "shown = dict(zip(times.tolist(), zip(read_at, pace(times, duration), strict=False), strict=True))",
+    ): "there is a pace for each frame",
     ("ignition", "before = max(i - 1, 0)", "before = max(i - 2, 0)"): "one more step is taken anew, to the same node",
 }
 

@@ -30,6 +30,7 @@ from hoverslam_lib import (
     ignition_table,
 )
 from hoverslam_lib._validate import digits
+from hoverslam_lib.ignition import _near
 
 PAPER = Descent()
 VENUS = Planet(mass=4.867e24, radius=6.0518e6, surface_density=65.0, scale_height=15.9e3)
@@ -609,3 +610,17 @@ def test_an_air_that_ends_somewhere_is_no_hindrance():
     descent = Descent(booster, Standard(**asdict(EARTH)), 4.8e3, -318.0)
     best = best_ignition(descent)
     assert hover_height(descent, best.t_ignite, dt=0.01, method="dop8") == pytest.approx(0, abs=1e-8)
+
+
+def test_bracket_near_a_root_reaches_to_its_other_side_or_there_is_none():
+    def lit(t, slope=-8.0):
+        """(h, v, t_stop, hover height) of a burn lit at t, which stops at 0 if t is 61 s."""
+        return 500.0, -10.0, 99.0, slope * (t - 61.0)
+
+    from_before = _near(lit, 60.9, 100.0)
+    assert from_before == pytest.approx((60.9, 62.5, 0.8, -12.0))
+    from_behind = _near(lit, 61.1, 100.0)
+    assert from_behind == pytest.approx((61.1, 59.5, -0.8, 12.0))
+    assert _near(lit, 60.9, 60.95) is None, "the fall ends before"
+    assert _near(lambda t: lit(t, 8.0), 60.9, 100.0) is None
+    assert _near(lambda t: (500.0, 0.0, 99.0, 1.0), 60.9, 100.0) is None, "at rest there is no telling how far to go"

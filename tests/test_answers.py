@@ -1,0 +1,79 @@
+"""What checks make of an answer: what it is, how far it is from another, and how it is shown."""
+
+import math
+
+import numpy as np
+import pytest
+
+from hoverslam_lib.checks import answers, feedback
+
+RAISED = ValueError("too long")
+DISTANCES = [
+    (1.0, 1.0, 0.0),
+    (1.2, 1.0, pytest.approx(2)),
+    (1.0, 1.2, pytest.approx(0.2 / 0.11)),
+    (math.nan, math.nan, 0.0),
+    (math.nan, 1.0, math.inf),
+    (math.inf, math.inf, 0.0),
+    ([1.0], 1.0, 0.0),
+    ([1.0, 2.0], [1.0, 2.4], pytest.approx(0.4 / 0.17)),
+    ([1.0, 2.0], [1.0], math.inf),
+    (np.ones((2, 1)), np.ones(2), math.inf),
+    ([], [], 0.0),
+    (("soft", 1.2), ("soft", 1.0), pytest.approx(2)),
+    (("soft", 1.0), ("crash", 1.0), math.inf),
+    (("soft", 1.0), ("soft",), math.inf),
+    ("soft", "soft", 0.0),
+    ("soft", 1.0, math.inf),
+    (RAISED, ValueError("too long"), 0.0),
+    (RAISED, ValueError("too short"), math.inf),
+    (RAISED, TypeError("too long"), math.inf),
+    (RAISED, 1.0, math.inf),
+    (1.0, RAISED, math.inf),
+]
+
+
+@pytest.mark.parametrize(("a", "b", "expected"), DISTANCES)
+def test_distance_is_in_units_of_the_tolerance(a, b, expected):
+    assert answers.distance(a, b, rtol=0.05, atol=0.05) == expected
+
+
+@pytest.mark.parametrize(
+    ("value", "shape", "what", "nudge"),
+    [
+        ([1.0, 2.0], (3,), "The result should be 3 numbers; it holds 2 numbers.", True),
+        (np.ones((3, 1)), (3,), "The result should be 3 numbers; it holds 3 × 1 numbers.", False),
+        (2.0, (3,), "The result should be 3 numbers; it holds one number.", False),
+        ("2", (3,), "The result should be 3 numbers; it is '2'.", False),
+        ([1.0, math.inf], (2,), "The result holds inf, which is not a finite number.", True),
+        (math.nan, (), "The result is nan, which is not a finite number.", True),
+        (math.sin, (), "The result should be one number; it is <built-in function sin>.", False),
+        ((lambda x: x), (), "The result should be one number; it is a function: are the brackets", False),
+    ],
+)
+def test_what_is_no_array_of_that_shape_is_said(value, shape, what, nudge):
+    with pytest.raises(feedback.Wrong) as raised:
+        answers.array(value, shape)
+    assert raised.value.what.startswith(what)
+    assert raised.value.nudge is nudge
+
+
+def test_answer_may_get_an_array_with_nan_or_of_words_and_leave_it():
+    for given in (np.array([1.0, math.nan]), np.array(["soft", "crash"]), np.array([1, 2])):
+        assert answers.repeatable(lambda x: 3.0, given) == 3.0
+
+    def spoils(x):
+        x[0] = x[1]
+        return 3.0
+
+    for given in (np.array([1.0, math.nan]), np.array(["soft", "crash"])):
+        with pytest.raises(feedback.Wrong, match="changes what it is given"):
+            answers.repeatable(spoils, given)
+
+
+def test_answer_is_shown_in_six_digits_and_four_numbers():
+    assert answers.digits(1 / 3) == "0.333333"
+    assert answers.digits([1, 2, 3, 4]) == "1, 2, 3, 4"
+    assert answers.digits(range(5)) == "0, 1, 2, 3, …"
+    assert answers.digits([]) == "[]"
+    assert answers.digits("soft") == "'soft'"

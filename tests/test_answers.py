@@ -77,3 +77,7 @@ def test_answer_is_shown_in_six_digits_and_four_numbers():
     assert answers.digits(range(5)) == "0, 1, 2, 3, …"
     assert answers.digits([]) == "[]"
     assert answers.digits("soft") == "'soft'"
+
+
+def test_refusal_reads_as_what_it_says():
+    assert str(feedback.Wrong("You square.", "squared", nudge=True)) == "You square."

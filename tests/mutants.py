@@ -56,8 +56,8 @@ TESTS = {  # the files test_….py in the order in which they are tried, and aft
     "published": "published",
     "recording": "recording",
     "trajectory": "trajectory integrators",
-    "checks.answers": "answers checks",
-    **{f"checks.{part}": "checks" for part in ("feedback", "judging", "pages", "record", "stopping")},
+    **{f"checks.{part}": "answers checks" for part in ("answers", "feedback", "judging")},
+    **{f"checks.{part}": "checks" for part in ("pages", "record", "stopping")},
     **{f"checks.lesson_{lesson}": "checks" for lesson in ("01", "04", "09", "11", "13")},
 }
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from hoverslam_lib.checks import answers, feedback
+from hoverslam_lib.checks import answers, feedback, judging
 
 RAISED = ValueError("too long")
 DISTANCES = [
@@ -81,3 +81,46 @@ def test_answer_is_shown_in_six_digits_and_four_numbers():
 
 def test_refusal_reads_as_what_it_says():
     assert str(feedback.Wrong("You square.", "squared", nudge=True)) == "You square."
+
+
+# ---- how it is judged ------------------------------------------------------------------------------------------------
+
+NUMBERS = judging.Numbers(
+    {"my_height": judging.Value("for the height", rtol=0.05), "my_count": judging.Value("for the count")},
+    {"my_height": 100.0, "my_count": 10.0},
+    [("halved", {"my_height": 50.0}), ("both", {"my_height": 20.0, "my_count": 2.0})],
+)
+
+
+@pytest.mark.parametrize(
+    ("answer", "what", "mistake"),
+    [
+        ((110.0, ...), "Not right for the height: 110 is close, but not within 5 %. Read or compute it", None),
+        ((90.0, 10.0), "Not right for the height: 90 is close", None),
+        ((130.0, ...), "Not right for the height: you have 130.", None),
+        ((..., 11.0), "Not right for the count: you have 11.", None),
+        ((50.0, 10.0), "", "halved"),
+        ((20.0, 2.0), "", "both"),
+        ((20.0, ...), "Not right for the height: you have 20.", None),
+    ],
+)
+def test_number_that_is_not_right_is_close_or_a_mistake_or_neither(answer, what, mistake):
+    with pytest.raises(feedback.Wrong) as raised:
+        list(NUMBERS(*answer))
+    assert raised.value.what.startswith(what)
+    assert raised.value.mistake == mistake
+
+
+def test_numbers_within_their_tolerance_are_right():
+    assert len(list(NUMBERS(104.0, 10.0))) == 2
+    assert len(list(NUMBERS(..., 10.0))) == 1
+
+
+def test_what_cannot_be_called_is_no_answer_where_a_function_is_asked_for():
+    judge = judging.Cases(lambda x: 2 * x, [], [(1.0,), (3.0,)], "for {x:g}")
+    assert len(list(judge(lambda x: x + x))) == 2
+    with pytest.raises(feedback.Wrong, match=r"should be a function of \(x\); it is 3\.0"):
+        list(judge(3.0))
+    passed, wrong = judge(lambda x: x + 1)
+    assert passed is None
+    assert str(wrong) == "Not right for 3: it gives 4."

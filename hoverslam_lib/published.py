@@ -270,6 +270,9 @@ def listing_2_mape(exact, approx):
 def _air_density(h):
     """`rho_air`, infinite where exp overflows: runs with faults can be thrown far below the ground."""
     try:
-        return EARTH.air_density(h)
+        return _AIR(h)
     except OverflowError:
         return math.inf
+
+
+_AIR = EARTH.air_density_law()  # looked up once: it is asked some ten thousand times a run

@@ -85,12 +85,16 @@ def acceleration(t_ignite, faults=ALL_FAULTS):
     if Fault.THRUST_SUBTRACTED in faults:
         thrust = -thrust
     always_up, endless = Fault.DRAG_ALWAYS_UP in faults, Fault.TANK_NEVER_EMPTY in faults
-    coefficient, area = booster.drag_coefficient, booster.area
+    coefficient, area, air_density = booster.drag_coefficient, booster.area, EARTH.air_density_law()
     t_ignite = _validate.number("t_ignite", t_ignite, "s", least=0)
 
     def f(t, h, v):
         burning, mass = _burning_and_mass(t, t_ignite, endless)
-        drag = (1 / (2 * mass)) * (_air_density(h) * coefficient * area * v**2)
+        try:
+            density = air_density(h)
+        except OverflowError:  # runs with faults can be thrown far below the ground
+            density = math.inf
+        drag = (1 / (2 * mass)) * (density * coefficient * area * v**2)
         if not always_up and v > 0:
             drag = -drag
         total = -EARTH.gravity(h) + drag
@@ -265,14 +269,3 @@ def listing_2_mape(exact, approx):
     """
     exact, approx = samples(exact=exact, approx=approx)
     return float(1 / len(exact) * ((exact[-1] - approx[-1]) / exact[-1]))
-
-
-def _air_density(h):
-    """`rho_air`, infinite where exp overflows: runs with faults can be thrown far below the ground."""
-    try:
-        return _AIR(h)
-    except OverflowError:
-        return math.inf
-
-
-_AIR = EARTH.air_density_law()  # looked up once: it is asked some ten thousand times a run

@@ -120,8 +120,8 @@ def changes(node, strings):
 
 
 def walk(node):
-    """All nodes but docstrings, annotations, `strict` of zip (a guard, behind which lengths are the same already) and what
-    is inside f-strings, whose places Python 3.11 does not know.
+    """All nodes but docstrings, annotations, `strict` of zip (a guard, behind which lengths are the same) and what is
+    inside f-strings, whose places Python 3.11 does not know.
     """
     yield node
     for name, field in ast.iter_fields(node):

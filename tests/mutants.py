@@ -65,6 +65,7 @@ TESTS = {  # the files test_….py in the order in which they are tried, and aft
 EQUIVALENT = {
     ("book", "key = digest.hexdigest()[:16]", "key = digest.hexdigest()[:17]"): "longer than it need be, either way",
     ("recording", 'names[-1] = "dt"', 'names[+1] = "dt"'): "there are two names where a third control is dt",
+    ("descent", "for _ in range(6):", "for _ in range(5):"): "a safe search takes over",
     ("ignition", "before = max(i - 1, 0)", "before = max(i - 2, 0)"): "one more step is taken anew, to the same node",
 }
 

@@ -1,7 +1,7 @@
 import math
 import time
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import FrozenInstanceError, replace
 
 import numpy as np
 import pytest
@@ -34,6 +34,7 @@ from hoverslam_lib.descent import (
     STOPPED_TOO_HIGH,
     StepTooLargeError,
     TooManyStepsError,
+    advance,
     stride,
 )
 
@@ -904,3 +905,16 @@ def test_too_late_an_ignition_on_the_way_out_is_refused_at_once():
 
 def test_ignition_at_the_end_of_time_is_a_crash_without_a_burn():
     assert fly(PAPER, 1e308).outcome == "crash"
+
+
+@pytest.mark.parametrize("v", [1e-9, 0.5, 3.0])
+def test_step_that_climbs_and_ends_on_the_ground_is_too_large_however_slow_it_is(v):
+    with pytest.raises(StepTooLargeError, match="a climb from t = 2 s ends on the ground: dt = 0.5 s is too large"):
+        advance(lambda f, t, h, v, dt: (h - 10 * dt, v), None, 2.0, 1.0, v, 0.5)
+
+
+def test_flight_stays_as_it_was_flown():
+    flown = fly(Descent(), 60.2, dt=0.5)
+    for name in ("descent", "outcome", "v"):
+        with pytest.raises(FrozenInstanceError):
+            setattr(flown, name, "changed")

@@ -63,6 +63,8 @@ TESTS = {  # the files test_….py in the order in which they are tried, and aft
 
 # (module, a line, what it became): why no test can tell
 EQUIVALENT = {
+    ("_roots", "same = (gx < 0) == (ga < 0)", "same = (gx <= 0) == (ga < 0)"): "where gx is 0 that is the answer",
+    ("_roots", "nearer = abs(ga) < abs(gb)", "nearer = abs(ga) <= abs(gb)"): "of two that are as near either will do",
     ("book", "key = digest.hexdigest()[:16]", "key = digest.hexdigest()[:17]"): "longer than it need be, either way",
     ("recording", 'names[-1] = "dt"', 'names[+1] = "dt"'): "there are two names where a third control is dt",
     ("descent", "for _ in range(6):", "for _ in range(5):"): "a safe search takes over",

@@ -127,3 +127,18 @@ def test_a_root_does_not_depend_on_those_found_beside_it():
     together = roots_of(targets)
     assert [roots_of(targets[i : i + 1])[0] for i in range(50)] == together.tolist()
     assert roots_of(np.array([])).size == 0
+
+
+def test_first_guess_is_that_of_a_straight_line():
+    asked = []
+
+    def line(x):
+        asked.append(x)
+        return 3.0 - x
+
+    assert bracketed_root(line, 0.0, 4.0, 3.0, -1.0) == pytest.approx(3.0)
+    assert asked[0] == pytest.approx(3.0)
+    one = len(asked)
+    found = bracketed_roots(line, np.zeros(2), np.full(2, 4.0), np.full(2, 3.0), np.full(2, -1.0))
+    assert found == pytest.approx(3.0)
+    assert asked[one] == pytest.approx(3.0)

@@ -251,7 +251,7 @@ def test_every_control_follows_keys_in_notebook_7(chromium, notebook_7, name):
 def test_lesson_on_a_phone_has_room_for_a_thumb_and_cuts_nothing(chromium, notebook_7):
     context = chromium.new_context(viewport={"width": 390, "height": 844}, device_scale_factor=3)
     page = context.new_page()
-    driver.open_alone(page, notebook_7, "09_ignition_tables.ipynb")
+    driver.open_alone(page, notebook_7, "06_forces_on_the_booster.ipynb")
     assert driver.run_all(page)["errors"] == []
     (figure,) = figures(page)
     figure.where.scroll_into_view_if_needed()

@@ -68,6 +68,16 @@ EQUIVALENT = {
     ("book", "key = digest.hexdigest()[:16]", "key = digest.hexdigest()[:17]"): "longer than it need be, either way",
     ("recording", 'names[-1] = "dt"', 'names[+1] = "dt"'): "there are two names where a third control is dt",
     ("descent", "for _ in range(6):", "for _ in range(5):"): "a safe search takes over",
+    (
+        "ensemble",
+        "ends = _March(*phase, solver, stops=True, ground=False).run()",
+        "ends = _March(*phase, solver, stops=True, ground=True).run()",
+    ): "a touchdown is looked for, too, for which nobody asks",
+    (
+        "ensemble",
+        "stop, turned = (v < 0) & (self._v >= 0), (v > 0) & (self._v <= 0)",
+        "stop, turned = (v < 0) & (self._v >= 0), (v > 0) & (self._v < 0)",
+    ): "a step that ends on the apex itself goes on to the same fall",
     ("ignition", "before = max(i - 1, 0)", "before = max(i - 2, 0)"): "one more step is taken anew, to the same node",
 }
 

@@ -4,7 +4,6 @@ import base64
 import io
 import json
 import re
-import shutil
 
 import nbformat
 import numpy as np
@@ -649,8 +648,3 @@ def test_for_students_unfolded_and_with_solutions_withheld(made, tmp_path):
     assert not any("Show the answer" in text or "what to make of it" in text for text in pages.values())
     assert not any("<summary>Solution" in text for text in pages.values())
     assert pages["02_explicit_euler.html"].count("<summary>Hints") == 3
-    book.build(course.lessons(), target)  # in its place
-    assert (target / "instructor_guide.html").exists()
-    shutil.rmtree(target / "_static")
-    with pytest.raises(ValueError, match="holds other files and no book"):
-        book.build(course.lessons(), target)

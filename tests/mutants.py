@@ -41,7 +41,7 @@ TESTS = {  # the files test_….py in the order in which they are tried, and aft
     "book": "book_pages guide",
     "booster": "oscillator_planet_booster ensemble | oscillator or columns",
     "collect": "collect",
-    "course": "course notebooks lesson_shape | not real and not handed and not pytest",
+    "course": "course notebooks lesson_shape live | not real and not handed and not pytest",
     "data": "data",
     "descent": "descent properties ensemble ignition",
     "ensemble": "ensemble properties",

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from hoverslam_lib.checks import answers, feedback, judging
+from hoverslam_lib.checks import answers, feedback, judging, lesson_09, lesson_11
 
 RAISED = ValueError("too long")
 DISTANCES = [
@@ -124,3 +124,19 @@ def test_what_cannot_be_called_is_no_answer_where_a_function_is_asked_for():
     passed, wrong = judge(lambda x: x + 1)
     assert passed is None
     assert str(wrong) == "Not right for 3: it gives 4."
+
+
+def test_search_that_is_none_or_divides_by_zero_of_itself_is_no_search_that_never_stops():
+    with pytest.raises(feedback.Wrong, match=r"should be a function of \(height, early, late\)"):
+        list(lesson_09.twelve_flights(60.2))
+
+    def divides(height, early, late):
+        return (height(early) - height(late)) / 0
+
+    with pytest.raises(ZeroDivisionError):
+        list(lesson_09.twelve_flights(divides))
+
+
+def test_detector_that_says_nothing_is_told_that_its_return_is_missing():
+    with pytest.raises(feedback.Wrong, match="None, neither True nor False: is a `return` missing"):
+        lesson_11._alarm(None)

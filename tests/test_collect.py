@@ -1,11 +1,16 @@
 """Returned copies: twelve students, and what becomes of each in the two tables."""
 
+import contextlib
 import csv
+import os
 import re
+import time
 import unicodedata
 import zipfile
+from pathlib import Path
 
 import nbformat
+import psutil
 import pytest
 
 from hoverslam_lib import checks, collect, course
@@ -218,3 +223,36 @@ def test_folder_without_copies_is_a_sentence(tmp_path, capsys, where):
     (tmp_path / "empty").mkdir()
     assert course.main(["collect", str(folder)]) == 2
     assert re.fullmatch(r".* holds no returned copies: name .*\n", capsys.readouterr().err)
+
+
+def test_lesson_is_known_by_its_title_or_by_its_name_if_one_of_its_exercises_is_in_it():
+    lessons = [collect.read_lesson(path) for path in (FIRST, SECOND)]
+
+    def lesson_of(name, *cells):
+        return collect._lesson_of(Path(name), [collect.Cell(kind, source, ()) for kind, source in cells], lessons)
+
+    renamed, answer = ("markdown", "# My own title"), "def my_energy_factor(omega, dt, n): ..."
+    assert lesson_of("mine.ipynb", ("markdown", f"{lessons[1].title}\n\nwhat follows")) == lessons[1]
+    assert lesson_of(f"{SECOND.stem} (1).ipynb", renamed, ("code", answer)) == lessons[1]
+    assert lesson_of(f"{SECOND.stem} (1).ipynb", renamed, ("markdown", answer)) is None
+    assert lesson_of("mine.ipynb", renamed, ("code", answer)) is None
+
+
+@pytest.mark.skipif(os.name != "posix", reason="no groups of processes")
+def test_what_a_notebook_has_started_ends_with_it(tmp_path):
+    started = tmp_path / "started.txt"
+    code = f"""import pathlib, subprocess
+child = subprocess.Popen(["sleep", "600"])
+pathlib.Path({str(started)!r}).write_text(str(child.pid))"""
+    assert collect._apart({"lesson": 2, "code": [code], "cell_limit": 60}, 120) == ([], None)
+    pid, end = int(started.read_text()), time.monotonic() + 10
+    while time.monotonic() < end and running(pid):
+        time.sleep(0.05)
+    assert not running(pid)
+
+
+def running(pid):
+    """Whether a process is there, and no zombie."""
+    with contextlib.suppress(psutil.NoSuchProcess):
+        return psutil.Process(pid).status() != psutil.STATUS_ZOMBIE
+    return False

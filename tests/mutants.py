@@ -78,6 +78,16 @@ EQUIVALENT = {
         "stop, turned = (v < 0) & (self._v >= 0), (v > 0) & (self._v <= 0)",
         "stop, turned = (v < 0) & (self._v >= 0), (v > 0) & (self._v < 0)",
     ): "a step that ends on the apex itself goes on to the same fall",
+    (
+        "checks.lesson_13",
+        "whole = Descent(booster, planet, PLAN.height + dh, PLAN.velocity + dv)",
+        "whole = Descent(booster, planet, PLAN.height + dh, PLAN.velocity - dv)",
+    ): "errors of either sign are equally frequent",
+    (
+        "checks.lesson_13",
+        'said = number(law(h + dh, v + dv, mass, memory), "the throttle")',
+        'said = number(law(h - dh, v + dv, mass, memory), "the throttle")',
+    ): "errors of either sign are equally frequent",
     ("ignition", "before = max(i - 1, 0)", "before = max(i - 2, 0)"): "one more step is taken anew, to the same node",
 }
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from hoverslam_lib.checks import answers, feedback, judging, lesson_09, lesson_11
+from hoverslam_lib.checks import answers, feedback, judging, lesson_04, lesson_09, lesson_11
 
 RAISED = ValueError("too long")
 DISTANCES = [
@@ -140,3 +140,21 @@ def test_search_that_is_none_or_divides_by_zero_of_itself_is_no_search_that_neve
 def test_detector_that_says_nothing_is_told_that_its_return_is_missing():
     with pytest.raises(feedback.Wrong, match="None, neither True nor False: is a `return` missing"):
         lesson_11._alarm(None)
+
+
+def raising(error):
+    def solve(*arguments):
+        raise error
+
+    return solve
+
+
+def test_what_is_done_where_there_is_no_solution_is_told_in_words():
+    probe = lesson_04.without_solution(1.0, 2.0)
+    assert str(probe(raising(ZeroDivisionError()))) == "an ArithmeticError"
+    for handed_back in (ArithmeticError("none"), ArithmeticError):
+        assert str(probe(lambda x, y, back=handed_back: back)) == "an error that is handed back"
+    for returned in (3.0, None, float):
+        assert str(probe(lambda x, y, back=returned: back)) == "no word"
+    with pytest.raises(feedback.Wrong, match="asked is an ArithmeticError.*raised ValueError: no root"):
+        probe(raising(ValueError("no root")))

@@ -239,3 +239,9 @@ def test_a_planet_may_have_an_air_of_its_own():
     assert layered.drag(4e3, -100.0) == pytest.approx(1.2 / EARTH.surface_density * Descent().drag(0.0, -100.0))
     for f in (layered.acceleration(), layered.acceleration(throttle=1.0), layered.acceleration_when_dry()):
         assert f(0.0, 5.1e3, -100.0) == f(0.0, 5.1e3, 0.0) < f(0.0, 4.9e3, -100.0)
+
+
+def test_booster_is_equal_to_no_planet_and_no_number():
+    assert (FALCON_9 == 3) is False
+    assert (FALCON_9 == EARTH) is False
+    assert FALCON_9 != EARTH

@@ -306,7 +306,7 @@ def _solve(descent, fall, march, near=None):
     if near and abs(missed_by(t_ignite)) > NEAR_ZERO * descent.height:  # steep, or no root but a jump
         t_ignite = bracketed_root(missed_by, *bracket)
         if abs(missed_by(t_ignite)) > NEAR_ZERO * descent.height:
-            # next to the jump rounding decides on which side a burn ends: a little before it, and not too little
+            # next to the jump rounding decides on which side a burn ends: look before it, further if need be
             before = (missed_by(max(t_ignite - s * t_end, 0.0)) for s in (1e-12, 1e-9, 1e-6))
             raise _too_weak(t_ignite, next((height for height in before if height > 0), bracket[2]))
     h, v, t_touchdown, _ = lit(t_ignite)

@@ -18,7 +18,7 @@ from hoverslam_lib.live import Live
 from hoverslam_lib.mission_control import Methods
 
 POSITIONS = 40
-"""At random, of each figure; tests/browser has a look at each of the 4 000 that the book records."""
+"""At random, of each figure; tests/browser reads what the book records, more than 3 000 places."""
 
 
 @pytest.fixture(params=NOTEBOOKS, ids=lambda path: path.stem, scope="module")

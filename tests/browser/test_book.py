@@ -307,10 +307,10 @@ def check_figure_follows(page, figure, record):
     assert figure.locator(".picture img").last.evaluate(SEEN_THROUGH)
     assert ground[2] >= book.SMALLEST * record["width"] - 1
     assert ground[2] / ground[3] == pytest.approx(record["width"] / record["height"], rel=0.01)
-    scrolls, room = figure.locator(".scroll").evaluate(
+    scrolls, width = figure.locator(".scroll").evaluate(
         "part => [part.scrollWidth > part.clientWidth, part.clientWidth]"
     )
-    assert scrolls == (book.SMALLEST * record["width"] > room + 1)
+    assert scrolls == (book.SMALLEST * record["width"] > width + 1)
     hint = figure.get_by_text("swipe it for the rest")
     hint.wait_for(state="visible" if scrolls else "hidden", timeout=10_000)  # it is measured after the first drawing
 

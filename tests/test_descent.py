@@ -1,5 +1,4 @@
 import math
-import time
 from contextlib import contextmanager
 from dataclasses import FrozenInstanceError, replace
 
@@ -643,9 +642,9 @@ def test_any_descent_ends_soon_and_consistently(method, seed):
         end = referee.free_fall(descent)[-1][0]
         # 0.02 s to 0.2 s would be finer than a test needs on the longest of these falls
         dt = max(0.05, end / 500)
-        start = time.process_time()
-        check_consistent(fly(descent, end * rng.uniform(0, 1.05), dt=dt, method=method))
-        assert time.process_time() - start < 10
+        with evaluations() as counted:
+            check_consistent(fly(descent, end * rng.uniform(0, 1.05), dt=dt, method=method))
+        assert len(counted) < 3e5
 
 
 @pytest.mark.parametrize("seed", range(2))
@@ -752,10 +751,10 @@ def test_bad_flight(changed, error, message):
     ("t_ignite", "dt", "steps"), [(60.0, 1e-6, 64_734_741), (None, 1e-6, 64_734_741), (0.0, 1e-6, 20_270_270)]
 )
 def test_a_step_too_small_is_refused_at_once(t_ignite, dt, steps):
-    start = time.process_time()
-    with pytest.raises(ValueError, match=rf"dt = 1e-06 s would take {steps:,} steps or more; at most 10,000,000"):
+    refusal = rf"dt = 1e-06 s would take {steps:,} steps or more; at most 10,000,000"
+    with evaluations() as counted, pytest.raises(ValueError, match=refusal):
         fly(PAPER, t_ignite, dt=dt)
-    assert time.process_time() - start < 2
+    assert len(counted) < 10
 
 
 @pytest.mark.parametrize("dt", [1e-300, 5e-324])
@@ -897,10 +896,9 @@ def test_a_fall_from_very_high_is_refused_before_it_is_flown():
 
 def test_too_late_an_ignition_on_the_way_out_is_refused_at_once():
     # it meets no ground before, so it would coast all the way to t_ignite
-    start = time.process_time()
-    with pytest.raises(ValueError, match="at most 10,000,000"):
+    with evaluations() as counted, pytest.raises(ValueError, match="at most 10,000,000"):
         fly(Descent(velocity=12e3), 1e9, dt=1.0)
-    assert time.process_time() - start < 2
+    assert len(counted) < 10
 
 
 def test_ignition_at_the_end_of_time_is_a_crash_without_a_burn():

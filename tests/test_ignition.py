@@ -2,7 +2,6 @@ import copy
 import math
 import pickle
 import re
-import time
 from dataclasses import asdict, replace
 from functools import cache
 
@@ -134,9 +133,9 @@ def test_best_ignition_on_an_airless_planet_of_no_mass_is_a_closed_form(height):
 
 
 def test_the_scale_height_of_no_air_is_without_meaning():
-    start = time.process_time()
-    optimum = best_ignition(Descent(planet=replace(MOON, scale_height=50.0)))
-    assert time.process_time() - start < 10
+    with evaluations() as counted:
+        optimum = best_ignition(Descent(planet=replace(MOON, scale_height=50.0)))
+    assert len(counted) < 2e4
     assert optimum.t_ignite == pytest.approx(best_ignition(Descent(planet=MOON)).t_ignite, rel=0, abs=1e-10)
 
 
@@ -441,12 +440,12 @@ def test_ignition_table_of_another_descent_and_any_iterable():
 @pytest.mark.parametrize("seed", range(10, 13))
 def test_best_ignition_of_any_descent_is_the_independent_one(seed):
     for descent in random_descents(seed, 12):
-        start = time.process_time()
-        try:
-            optimum = best_ignition(descent)
-        except NoSoftLanding as error:
-            optimum = error
-        assert time.process_time() - start < 10
+        with evaluations() as counted:
+            try:
+                optimum = best_ignition(descent)
+            except NoSoftLanding as error:
+                optimum = error
+        assert len(counted) < 2e4
         fall = referee.free_fall(descent)
         if isinstance(optimum, Ignition) or optimum.reason == "tank":
             t_ignite = referee_ignition(descent)
@@ -492,17 +491,15 @@ BAD_HOVERS = [
 @pytest.mark.parametrize(("changed", "error", "message"), BAD_HOVERS)
 def test_bad_input_to_hover_height(changed, error, message):
     arguments = {"t_ignite": 60.0} | changed
-    start = time.process_time()
-    with pytest.raises(error, match=message):
+    with evaluations() as counted, pytest.raises(error, match=message):
         hover_height(PAPER, arguments.pop("t_ignite"), **arguments)
-    assert time.process_time() - start < 2
+    assert len(counted) < 10
 
 
-def test_a_burn_of_too_many_steps_is_refused_at_once():
-    start = time.process_time()
-    with pytest.raises(ValueError, match="at most 10,000,000"):
+def test_a_burn_of_too_many_steps_is_refused_before_it_is_flown():
+    with evaluations() as counted, pytest.raises(ValueError, match="at most 10,000,000"):
         hover_height(Descent(height=10.0, velocity=-40.0), 0.0, dt=1e-8)
-    assert time.process_time() - start < 2
+    assert len(counted) < 6e5
 
 
 BAD_TABLES = [

@@ -43,7 +43,7 @@ def positions(live):
     if unknown:
         raise ValueError(f"recorded: there is no control {unknown[0]!r}; there are {', '.join(live.controls)}")
     found = {
-        name: _all_places(live.controls[name]) if given is None else [_place(live.controls[name], v) for v in given]
+        name: _all_places(live.controls[name]) if given is None else _those_of(live.controls[name], given)
         for name, given in wanted.items()
     }
     free = sorted((name for name, given in wanted.items() if given is None), key=lambda name: len(found[name]))
@@ -167,9 +167,13 @@ def _all_places(control):
     return places
 
 
-def _place(control, value):
-    """The place of a control that is equal to a value; it is not put there, because its figure would follow."""
+def _those_of(control, values):
+    """The places of a control that are equal to values. It is not put there: its figure would follow."""
     places = _places(control)
+    return [_place(control, value, places) for value in values]
+
+
+def _place(control, value, places):
     if places is None:
         try:
             return control.traits()["value"].validate(control, value)

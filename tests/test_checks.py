@@ -452,6 +452,7 @@ def test_interrupt_stops_the_answer(tmp_path):
     code = (
         "import os, signal, threading, time\n"
         "from hoverslam_lib import checks\n"
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"  # where a shell has it ignored
         "def endless(omega, dt, n):\n"
         "    threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()\n"
         "    while True: pass\n"

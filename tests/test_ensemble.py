@@ -552,6 +552,7 @@ def test_progress_is_printed_where_it_is_asked_for(capsys, monkeypatch):
 @pytest.mark.skipif(os.name == "nt", reason="Windows sends no SIGINT to one process")
 def test_it_can_be_interrupted_at_once():
     code = (
+        "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); "  # where a shell has it ignored
         "import numpy as np; from hoverslam_lib import *; "
         "fly_all(Descent(height=np.linspace(1e5, 2e5, 2_000_000)), 60.0, dt=0.02, progress=True)"
     )

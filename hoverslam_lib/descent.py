@@ -443,16 +443,16 @@ def walk(step, f, start, t_end, *, dt, ground=0.0):
                 t = t_next if event is None else min(t + s, t_next)
                 yield t, h, v, event
         if t < t_end:
-            _validate.step_count(_end_of_walk(f, (t, h, v), t_end, ground) - start[0], dt)
+            _validate.step_count(end_of_walk(f, (t, h, v), t_end, ground) - start[0], dt)
 
 
-def _end_of_walk(f, node, t_end, ground):
+def end_of_walk(f, node, t_end, ground):
     """When a walk ends that has come to a node, nearly; a time before that if it does not show in a few steps."""
     with suppress(TooManyStepsError):
         for t, _, v, event in stride(1e-6, iter(range(LONG_WALK // 12)), f, node, t_end, ground=ground):  # noqa: B007
             if event in ("stop", "ground"):
                 break
-    return t if v <= 0 else node[0]  # it may climb for good: who walks sees that in time
+    return t if v <= 0 or t == t_end else node[0]  # it may climb for good: who walks sees that in time
 
 
 def stride(tolerance, tries, f, start, t_end, *, ground=0.0):

@@ -18,6 +18,7 @@ from hoverslam_lib import _validate
 from hoverslam_lib._roots import bracketed_roots
 from hoverslam_lib.descent import (
     CRASH,
+    LONG_WALK,
     OUT_OF_PROPELLANT,
     OUTCOMES,
     SOFT_LANDING,
@@ -26,6 +27,7 @@ from hoverslam_lib.descent import (
     Descent,
     StepTooLargeError,
     coast,
+    end_of_walk,
     never_comes_down,
     speed_after_fall,
     walk,
@@ -298,6 +300,8 @@ class _March:
             if not self._place.size:
                 break
             t, h, v = k * dt, self._h, self._v
+            if k == LONG_WALK:
+                self._look_ahead(t)
             _validate.step_count(t, dt)
             ending = self._duration - t <= dt * (1 + 1e-9)
             length = np.where(ending, self._duration - t, dt) if ending.any() else dt
@@ -315,6 +319,12 @@ class _March:
         self._descent = self._descent.rows(which)
         for name in ("_place", "_above", "_h", "_v", "_duration", "_floor"):
             setattr(self, name, getattr(self, name)[which])
+
+    def _look_ahead(self, t):
+        """Raise if the highest lane would take too many steps, as `walk` does."""
+        i = int(np.argmax(self._h))
+        f, node = self._phase(self._descent.rows(i)), (t, float(self._h[i]), float(self._v[i]))
+        _validate.step_count(end_of_walk(f, node, float(self._duration[i]), float(self._floor[i])), self._solver.dt)
 
     def _look(self, t, h, v, length):
         """Record what happens to whom in a step; return whose march is over."""

@@ -858,11 +858,13 @@ def evaluations():
 def short_walks(monkeypatch):
     """Walks may have twenty thousand steps, and look ahead after a thousand."""
     monkeypatch.setattr(_validate, "MAX_STEPS", 20_000)
-    monkeypatch.setattr("hoverslam_lib.descent.LONG_WALK", 1_000)
+    for module in ("descent", "ensemble"):
+        monkeypatch.setattr(f"hoverslam_lib.{module}.LONG_WALK", 1_000)
 
 
 THICK = Planet(mass=4.867e24, radius=6.0518e6, surface_density=65.0, scale_height=15.9e3)
 FAR = Descent(planet=MOON, height=1e7, velocity=0.0)
+CLIMBS = Descent(replace(FALCON_9, thrust=7e5, burn_rate=0.01), MOON, height=1e3, velocity=-1.0)
 BRAKED = Descent(planet=THICK, height=1e3, velocity=-1000.0)  # by the air, in a fraction of what the engine would take
 
 
@@ -873,6 +875,7 @@ BRAKED = Descent(planet=THICK, height=1e3, velocity=-1000.0)  # by the air, in a
         (lambda dt: fly(Descent(planet=THICK), None, dt=dt), lambda: referee.free_fall(Descent(planet=THICK))[-1][0]),
         (lambda dt: fly(FAR, None, dt=dt), lambda: referee.free_fall(FAR)[-1][0]),  # where gravity is weak
         (lambda dt: hover_height(BRAKED, 0.0, dt=dt), lambda: referee.hover(BRAKED, 0.0)[0]),
+        (lambda dt: fly(CLIMBS, 0.0, dt=dt), lambda: CLIMBS.booster.burn_duration),
     ],
 )
 def test_a_walk_looks_ahead_whether_it_ends_within_the_steps_allowed(run, lasts):

@@ -17,7 +17,7 @@ import referee
 import strategies
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from test_descent import BURNOUTS, CRASHES
+from test_descent import BURNOUTS, CRASHES, evaluations, short_walks  # noqa: F401 - a fixture
 
 from hoverslam_lib import (
     EARTH,
@@ -547,6 +547,14 @@ def test_progress_is_printed_where_it_is_asked_for(capsys, monkeypatch):
     assert err.split("\r")[1:] == [f"fly_all: {done} of 5 flights" for done in (0, 2, 4)] + [
         "fly_all: 5 of 5 flights\n"
     ]
+
+
+@pytest.mark.usefixtures("short_walks")
+def test_flights_that_would_take_too_many_steps_are_refused_before_they_are_flown():
+    descent = Descent(velocity=np.array([-300.0, 10.9e3]))  # the second falls, after a long way up
+    with evaluations() as counted, pytest.raises(ValueError, match=r"would take 20,77\d steps or more"):
+        fly_all(descent, None, dt=20.0)
+    assert len(counted) < 5 * 1_000 + 1_100
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows sends no SIGINT to one process")

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from hoverslam_lib.checks import answers, feedback, judging, lesson_04, lesson_09, lesson_11
+from hoverslam_lib.checks import answers, feedback, judging, lesson_04, lesson_09, lesson_11, lesson_13
 
 RAISED = ValueError("too long")
 DISTANCES = [
@@ -158,3 +158,17 @@ def test_what_is_done_where_there_is_no_solution_is_told_in_words():
         assert str(probe(lambda x, y, back=returned: back)) == "no word"
     with pytest.raises(feedback.Wrong, match="asked is an ArithmeticError.*raised ValueError: no root"):
         probe(raising(ValueError("no root")))
+
+
+@pytest.mark.parametrize(
+    ("ends", "mistake"),
+    [
+        (["crash", "stopped too high", "soft landing", "soft landing"], None),
+        (["crash", "stopped too high", "stopped too high", "soft landing"], "stops too high"),
+    ],
+)
+def test_law_that_stops_too_high_does_so_in_most_flights_that_fail(ends, mistake):
+    with pytest.raises(feedback.Wrong) as raised:
+        list(lesson_13._enough("With errors", ends, 4, 4, None, {0.6, 0.7, 1.0}))
+    assert raised.value.mistake == mistake
+    assert f"{ends.count('stopped too high')} × stopped too high" in raised.value.values["score"]

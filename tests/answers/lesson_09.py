@@ -64,6 +64,19 @@ def _in_an_array(height, early, late):
     return t[-1]
 
 
+def _spends(flights):
+    """A good search that then asks for more heights than it needs."""
+
+    def search(height, early, late):
+        tried = []
+        found = _secant(lambda t: tried.append(t) or height(t), early, late)
+        for n in range(flights - len(tried)):
+            height(early + (n + 1) / 9)
+        return found
+
+    return search
+
+
 # exercise: what was answered, and the name of the mistake if it has one
 WRONG = {
     "9.1": [(1147.0, None), (0, None), (20.13, "not rounded"), ("21 halvings", None)],
@@ -75,11 +88,12 @@ WRONG = {
         (lambda height, early, late: _secant(height, early, late, near=1e-3), "stops too early"),
         (lambda height, early, late: (early + late) / 2, None),
         (lambda height, early, late: 60.211035517, None),
+        (_spends(13), None),
     ],
 }
 
 RIGHT = {
     "9.1": [21.0, np.int64(21)],
     "9.2": [(0.0218, 0.0256), (np.float64(0.011), 0.022), (0.016, 0.01)],
-    "9.3": [_illinois, _in_an_array],
+    "9.3": [_illinois, _in_an_array, _spends(12)],
 }

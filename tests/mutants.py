@@ -89,6 +89,7 @@ EQUIVALENT = {
         'said = number(law(h + dh, v + dv, mass, memory), "the throttle")',
         'said = number(law(h - dh, v + dv, mass, memory), "the throttle")',
     ): "errors of either sign are equally frequent",
+    ("ignition", "super().__init__(reason, amount, message)", "pass"): "an exception has its arguments before that",
     ("ignition", "before = max(i - 1, 0)", "before = max(i - 2, 0)"): "one more step is taken anew, to the same node",
 }
 

@@ -587,8 +587,17 @@ def test_a_refusal_asks_whether_a_unit_was_meant(careless, asked):
         best_ignition(careless)
 
 
+HARDLY_KILONEWTONS = PAPER.weight(0.0, FALCON_9.dry_mass) / 1000  # a thousand times that is no more than the weight
+
+
 @pytest.mark.parametrize(
-    "hopeless", [Descent(replace(FALCON_9, thrust=20.0)), Descent(height=1.5e3), Descent(height=1.0, velocity=-3e3)]
+    "hopeless",
+    [
+        Descent(replace(FALCON_9, thrust=20.0)),
+        Descent(replace(FALCON_9, thrust=HARDLY_KILONEWTONS)),
+        Descent(height=1.5e3),
+        Descent(height=1.0, velocity=-3e3),
+    ],
 )
 def test_a_refusal_does_not_ask_where_the_unit_would_not_help(hopeless):
     with pytest.raises(NoSoftLanding) as caught:

@@ -391,6 +391,8 @@ def _burn(descent, t, h, v, controller, *, dt, step):
             throttle, rate, since, mass_then = asked, asked * booster.burn_rate, t, mass
             f = descent.acceleration(throttle=throttle, mass=mass, since=since)
             t_empty = since + (mass - booster.dry_mass) / rate if rate else math.inf
+        if controller is None and v > 0 and f(t, h, 0.0) > 0:  # it climbs until the tank is empty
+            _validate.step_count(t_empty - t, dt)
         start = t, h, v
         for t, h, v, event in walk(step, f, start, min(t_next, t_empty), dt=dt):
             if nodes and t == nodes[-1][0]:  # asked anew there, or the step was shorter than the last digit of t
@@ -403,6 +405,8 @@ def _burn(descent, t, h, v, controller, *, dt, step):
                 if fall := _soft_fall(descent.planet, t, h, v, mass):
                     return nodes[:-1] + fall, True, (t, h)
                 hover = hover or (t, h)
+                if controller is None:  # from here it climbs until the tank is empty
+                    _validate.step_count(t_empty - t, dt)
         if t >= t_empty:
             fall = _soft_fall(descent.planet, t, h, v, booster.dry_mass)
             return nodes[:-1] + (fall or [(t, h, v, booster.dry_mass, throttle)]), bool(fall), hover
@@ -449,10 +453,11 @@ def walk(step, f, start, t_end, *, dt, ground=0.0):
 def end_of_walk(f, node, t_end, ground):
     """When a walk ends that has come to a node, nearly; a time before that if it does not show in a few steps."""
     with suppress(TooManyStepsError):
-        for t, _, v, event in stride(1e-6, iter(range(LONG_WALK // 12)), f, node, t_end, ground=ground):  # noqa: B007
+        for t, h, v, event in stride(1e-6, iter(range(LONG_WALK // 12)), f, node, t_end, ground=ground):  # noqa: B007
             if event in ("stop", "ground"):
                 break
-    return t if v <= 0 or t == t_end else node[0]  # it may climb for good: who walks sees that in time
+    for_good = v > 0 and (t_end == math.inf or f(t, h, 0.0) > 0)  # it may climb so: who walks sees that in time
+    return node[0] if for_good else t
 
 
 def stride(tolerance, tries, f, start, t_end, *, ground=0.0):

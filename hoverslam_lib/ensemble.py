@@ -323,8 +323,11 @@ class _March:
     def _look_ahead(self, t):
         """Raise if the highest lane would take too many steps, as `walk` does."""
         i = int(np.argmax(self._h))
-        f, node = self._phase(self._descent.rows(i)), (t, float(self._h[i]), float(self._v[i]))
-        _validate.step_count(end_of_walk(f, node, float(self._duration[i]), float(self._floor[i])), self._solver.dt)
+        h, v, end, floor = (float(column[i]) for column in (self._h, self._v, self._duration, self._floor))
+        f = self._phase(self._descent.rows(i))
+        if not (v > 0 and f(t, h, 0.0) > 0):  # else it climbs to the end
+            end = end_of_walk(f, (t, h, v), end, floor)
+        _validate.step_count(end, self._solver.dt)
 
     def _look(self, t, h, v, length):
         """Record what happens to whom in a step; return whose march is over."""

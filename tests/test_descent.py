@@ -875,7 +875,7 @@ BRAKED = Descent(planet=THICK, height=1e3, velocity=-1000.0)  # by the air, in a
         (lambda dt: fly(Descent(planet=THICK), None, dt=dt), lambda: referee.free_fall(Descent(planet=THICK))[-1][0]),
         (lambda dt: fly(FAR, None, dt=dt), lambda: referee.free_fall(FAR)[-1][0]),  # where gravity is weak
         (lambda dt: hover_height(BRAKED, 0.0, dt=dt), lambda: referee.hover(BRAKED, 0.0)[0]),
-        (lambda dt: fly(CLIMBS, 0.0, dt=dt), lambda: CLIMBS.booster.burn_duration),
+        (lambda dt: fly(Descent(velocity=10.9e3), 1.9e5, dt=dt), lambda: 1.9e5),  # it climbs still
     ],
 )
 def test_a_walk_looks_ahead_whether_it_ends_within_the_steps_allowed(run, lasts):
@@ -884,6 +884,15 @@ def test_a_walk_looks_ahead_whether_it_ends_within_the_steps_allowed(run, lasts)
     with evaluations() as counted, pytest.raises(ValueError, match=r"take 20,9\d\d steps or more; at most 20,000"):
         run(lasts / 20_990)
     assert len(counted) < 4 * 1_000 + 1_100
+
+
+@pytest.mark.usefixtures("short_walks")
+@pytest.mark.parametrize("velocity", [-1.0, 1.0])
+def test_a_burn_that_climbs_until_the_tank_is_empty_is_refused_before_it_is_flown(velocity):
+    fly(replace(CLIMBS, velocity=velocity), 0.0, dt=160.0)
+    with evaluations() as counted, pytest.raises(ValueError, match=r"would take 21,42\d steps or more"):
+        fly(replace(CLIMBS, velocity=velocity), 0.0, dt=140.0)
+    assert len(counted) < 200
 
 
 def test_a_fall_from_very_high_is_refused_before_it_is_flown():

@@ -17,7 +17,7 @@ import referee
 import strategies
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from test_descent import BURNOUTS, CRASHES, evaluations, short_walks  # noqa: F401 - a fixture
+from test_descent import BURNOUTS, CLIMBS, CRASHES, evaluations, short_walks  # noqa: F401 - a fixture
 
 from hoverslam_lib import (
     EARTH,
@@ -550,10 +550,17 @@ def test_progress_is_printed_where_it_is_asked_for(capsys, monkeypatch):
 
 
 @pytest.mark.usefixtures("short_walks")
-def test_flights_that_would_take_too_many_steps_are_refused_before_they_are_flown():
-    descent = Descent(velocity=np.array([-300.0, 10.9e3]))  # the second falls, after a long way up
-    with evaluations() as counted, pytest.raises(ValueError, match=r"would take 20,77\d steps or more"):
-        fly_all(descent, None, dt=20.0)
+@pytest.mark.parametrize(
+    ("descent", "t_ignite", "dt", "steps"),
+    [
+        (Descent(velocity=np.array([-300.0, 10.9e3])), None, 20.0, r"20,77\d"),  # falls, after a long way up
+        (Descent(velocity=np.array([-300.0, 10.9e3])), 150e3, 5.0, "30,000"),  # climbs when it is lit
+        (replace(CLIMBS, velocity=np.array([-1.0, 1.0])), 0.0, 140.0, r"21,42\d"),  # lit while it climbs
+    ],
+)
+def test_flights_that_would_take_too_many_steps_are_refused_before_they_are_flown(descent, t_ignite, dt, steps):
+    with evaluations() as counted, pytest.raises(ValueError, match=f"would take {steps} steps or more"):
+        fly_all(descent, t_ignite, dt=dt)
     assert len(counted) < 5 * 1_000 + 1_100
 
 

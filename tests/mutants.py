@@ -67,6 +67,7 @@ EQUIVALENT = {
     ("_roots", "same = (gx < 0) == (ga < 0)", "same = (gx <= 0) == (ga < 0)"): "where gx is 0 that is the answer",
     ("_roots", "nearer = abs(ga) < abs(gb)", "nearer = abs(ga) <= abs(gb)"): "of two that are as near either will do",
     ("book", "key = digest.hexdigest()[:16]", "key = digest.hexdigest()[:17]"): "longer than it need be, either way",
+    ("checks.pages", "return made[0]", "return made[-1]"): "there is one, or an error before that",
     ("recording", 'names[-1] = "dt"', 'names[+1] = "dt"'): "there are two names where a third control is dt",
     ("descent", "for _ in range(6):", "for _ in range(5):"): "a safe search takes over",
     (

@@ -97,12 +97,14 @@ def test_wrong_answer_does_not_pass_and_only_its_own_mistake_is_named(number, ca
     assert not said.done
     assert said.mistake == mistake, said
     assert said.hint or not said.attempted
+    assert record.done() == set()
 
 
 @pytest.mark.parametrize(("number", "answer"), answers("RIGHT"))
 def test_right_answer_written_differently_passes(number, answer):
     said = checks.EXERCISES[number](*given(answer))
     assert said.text.startswith(f"✔ {said.tests} of {said.tests}"), said
+    assert record.done() == {number}
 
 
 @pytest.mark.parametrize(("number", "row"), rows())

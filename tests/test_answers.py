@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from hoverslam_lib.checks import answers, feedback, judging, lesson_04, lesson_09, lesson_11, lesson_13
+from hoverslam_lib.checks import answers, feedback, judging, lesson_01, lesson_04, lesson_09, lesson_11, lesson_13
 
 RAISED = ValueError("too long")
 DISTANCES = [
@@ -140,6 +140,15 @@ def test_search_that_is_none_or_divides_by_zero_of_itself_is_no_search_that_neve
 def test_detector_that_says_nothing_is_told_that_its_return_is_missing():
     with pytest.raises(feedback.Wrong, match="None, neither True nor False: is a `return` missing"):
         lesson_11._alarm(None)
+
+
+def test_measures_that_do_not_disagree_enough_are_told_by_how_much():
+    exact, p, q = ([3.0, 0.01], [3.3, 0.001], [0.03, 0.08])
+    with pytest.raises(feedback.Wrong) as raised:
+        list(lesson_01.measures_disagree(exact, p, q))
+    by_mape = (0.99 + 7) / (0.1 + 0.9)
+    by_nmae = (0.3 + 0.009) / (2.97 + 0.07)
+    assert raised.value.values == {"mape": pytest.approx(by_mape), "nmae": pytest.approx(by_nmae)}
 
 
 def raising(error):

@@ -212,7 +212,7 @@ class _Solver:
         s, top = self.turn(f, t, h[turned], v[turned], length[turned], v_end[turned])
         t, h, v, first, last, h_end, v_end = (np.array(x) for x in (t + 0 * h, h, v, length, length, h_end, v_end))
         t[turned], h[turned], v[turned], first[turned], last[turned] = t[turned] + s, top, 0.0, s, last[turned] - s
-        h_end[turned], v_end[turned] = self.part(f, t[turned], top, 0.0 * top, last[turned])
+        h_end[turned], v_end[turned] = self.part(f, t[turned], top, np.zeros_like(top), last[turned])
         return first, (t, h, v, last), h_end, v_end
 
     def require(self, good, lanes, what):

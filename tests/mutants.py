@@ -33,7 +33,7 @@ import pytest
 ROOT = Path(__file__).resolve().parent.parent
 
 TESTS = {  # the files test_….py in the order in which they are tried, and after | which of their tests: see pytest's -k
-    "_columns": "ensemble | columns or row or index or bad",
+    "_columns": "ensemble oscillator_planet_booster | columns or row or index or bad or equal",
     "_dop853": "integrators",
     "_roots": "roots",
     "_validate": "trajectory oscillator_planet_booster ensemble ignition descent | bad or refused or digits or at_once",
@@ -75,6 +75,7 @@ EQUIVALENT = {
     ("checks.pages", "return made[0]", "return made[-1]"): "there is one, or an error before that",
     ("recording", 'names[-1] = "dt"', 'names[+1] = "dt"'): "there are two names where a third control is dt",
     ("descent", "for _ in range(6):", "for _ in range(5):"): "a safe search takes over",
+    ("ensemble", "BLOCK = 16_384", "BLOCK = 16383"): "the numbers do not depend on it, and the time hardly",
     (
         "ensemble",
         "ends = _March(*phase, solver, stops=True, ground=False).run()",

@@ -151,6 +151,11 @@ def test_measures_that_do_not_disagree_enough_are_told_by_how_much():
     assert raised.value.values == {"mape": pytest.approx(by_mape), "nmae": pytest.approx(by_nmae)}
 
 
+def test_runs_are_named_as_people_would():
+    assert not [what for what in lesson_11._runs() if "inf" in what]
+    assert [what for what in lesson_11._runs() if ", never lit, " in what]
+
+
 def raising(error):
     def solve(*arguments):
         raise error

@@ -66,6 +66,12 @@ def _g_load(t_ignite, t, h, v):
     return np.max(np.abs(np.diff(v) / np.diff(t) + 9.81)) > 30 * 9.81
 
 
+def _spoils(t, h, v):
+    said = _steps(t, h, v)
+    h -= h[-1]
+    return said
+
+
 WRONG = {
     "11.1": [((25_824, 57.1), None), (("25.8 t", 0.93), None), ((25_333, 1.26), None), ((25_824, 929), None)],
     "11.2": [
@@ -84,6 +90,7 @@ WRONG = {
         (lambda t, h, v: np.abs(_off(t, h, v)) > 300 * np.diff(t) ** 2, None),
         (lambda t, h, v: _steps(t, h, v) or None, None),
         (lambda t, h, v: "ALARM", None),
+        (_spoils, "changes its arguments"),
     ],
     "11.3": [
         (_ledger, None),

@@ -93,6 +93,26 @@ def test_every_letter_of_its_tables_is_in_the_glossary(path):
     assert used - known == set()
 
 
+def test_words_of_the_glossary_stand_in_the_lessons_that_it_names_for_them():
+    words = (course.NOTEBOOKS / "glossary.md").read_text(encoding="utf-8").split("## Words")[1]
+    entries = re.findall(r"^\*\*.+?(?=\n\n|\Z)", words, re.MULTILINE | re.DOTALL)
+    assert len(entries) > 80
+    text = {
+        int(path.name[:2]): "\n".join(cell.source for kind in ("markdown", "code") for cell in cells(path, kind))
+        for path in LESSONS
+    }
+    for entry in entries:
+        lessons = [int(number) for found in re.findall(r"\((\d[\d, ]*)[;)]", entry) for number in found.split(",")]
+        names = [name for bold in re.findall(r"\*+([^*]+)\*+", entry) for name in re.split("[,(]", bold)]
+        # in any form: "methods" and "axes, logarithmic" too
+        stems = [[word[: max(4, len(word) - 2)] for word in re.findall(r"\w+", name)] for name in names]
+        assert lessons, entry
+        for number in lessons:
+            assert any(stem and all(re.search(rf"(?i)\b{part}", text[number]) for part in stem) for stem in stems), (
+                entry
+            )
+
+
 def letters(table):
     """What stands between dollars in the first column, of `v = …` the v."""
     first = "\n".join(line.split("|")[1] for line in table.splitlines() if line.startswith("|"))

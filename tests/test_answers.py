@@ -156,6 +156,11 @@ def test_runs_are_named_as_people_would():
     assert [what for what in lesson_11._runs() if ", never lit, " in what]
 
 
+def test_midpoint_method_of_the_worlds_looks_at_the_middle():
+    assert lesson_13._midpoint(lambda t, h, v: -v, 0.0, 0.0, 1.0, 0.1) == pytest.approx((0.09525, 0.905), rel=1e-15)
+    assert lesson_13._midpoint(lambda t, h, v: t + h, 2.0, 1.0, 4.0, 0.2) == pytest.approx((1.87, 4.7), rel=1e-15)
+
+
 def raising(error):
     def solve(*arguments):
         raise error

@@ -44,7 +44,10 @@ def drawn_anew(fig):
 def shown(monkeypatch):
     """What is handed to the page."""
     bundles = []
-    monkeypatch.setattr(live, "display", lambda bundle, raw: bundles.append(bundle))
+    # with raw it is a bundle of formats; else IPython would show it as a dictionary
+    monkeypatch.setattr(
+        live, "display", lambda shown, raw: bundles.append(shown if raw else {"text/plain": str(shown)})
+    )
     return bundles
 
 
@@ -158,6 +161,7 @@ SLIDERS = (
     ("0.2", "15", "0.1"),
     ("0", "90", "0.01"),
     ("-2500", "2500", "1"),
+    ("0.05", "1", "0.1"),
 )
 
 

@@ -9,12 +9,13 @@ import numpy as np
 import pandas as pd
 import pytest
 import traitlets
+from ipywidgets import Button
 from matplotlib.text import Text
 from screen import shown
 
 from hoverslam_lib import EARTH, Descent, best_ignition, fly, hover_height, plotting, published
 from hoverslam_lib.integrators import METHODS
-from hoverslam_lib.mission_control import START, STEPS, MissionControl, stroke, try_out
+from hoverslam_lib.mission_control import START, STEPS, Methods, MissionControl, stroke, try_out
 
 
 @pytest.fixture(scope="module")
@@ -230,6 +231,33 @@ def test_panels_fill_the_room_with_letters_of_the_pages_size_and_nothing_cut(pag
     sharp = shown(page.live.screen)[::2, ::2].astype(int)
     in_a_browser(page, width, height, font)
     assert np.mean(np.abs(sharp - shown(page.live.screen)) > 64) < 0.1
+
+
+def inside(widget):
+    yield widget
+    for child in getattr(widget, "children", ()):
+        yield from inside(child)
+
+
+def test_page_has_every_control_and_a_button_for_each_thing_that_it_can_do(page):
+    there = list(inside(page.live.widget))
+    assert set(page.live.controls.values()) | {page.slider, page.live.screen, page.table, page.play} <= set(there)
+    buttons = {button.description: button for button in there if isinstance(button, Button)}
+    assert list(buttons) == ["Reset", "The paper's landing", "Find the optimum", "Keep this trial", "Clear the table"]
+    buttons["The paper's landing"].click()
+    assert "comes to 0 m/s 2.6 m above the ground" in page.live.text
+    buttons["Keep this trial"].click()
+    assert len(page.to_frame()) == 1
+    buttons["Find the optimum"].click()
+    assert page.live.controls["t_ignite"].value == 60.211036
+    buttons["Clear the table"].click()
+    assert page.to_frame().empty
+    buttons["Reset"].click()
+    assert page.live.values() == START
+
+
+def test_browser_is_told_which_methods_are_chosen_and_how_each_looks():
+    assert {"value", "looks", "description"} <= set(Methods().keys)
 
 
 def test_methods_are_chosen_in_their_order_and_drawn_as_everywhere(page):

@@ -255,6 +255,7 @@ def booster_scene(ax, flight, *, top):
     callable
         ``move(t)``, see `film`.
     """
+    top = top or 1.0  # if it stands on the ground all the time
     unit, name = (1e3, "km") if top > 2e3 else (1.0, "m")
     ax.set(xlim=(-1, 1), ylim=(-0.1 * top / unit, 1.65 * top / unit), xticks=[], ylabel=f"h [{name}]")
     ax.grid(visible=False)

@@ -8,6 +8,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 from PIL import Image
 
 from hoverslam_lib import Descent, animation, best_ignition, fly, plotting
@@ -94,6 +95,16 @@ def test_numbers_stand_long_enough_to_be_read_and_the_last_ones_are_those_of_the
     changed = [np.any(a != b) for a, b in zip(right, right[1:], strict=False)]
     assert landing.durations[0] == animation.LEGIBLE / 2
     assert changed == [n % 2 == len(changed) % 2 for n in range(1, len(changed) + 1)]
+
+
+@pytest.mark.parametrize("n", range(1, 9))
+def test_instruments_begin_with_the_first_time_and_end_with_the_last(landed, monkeypatch, n):
+    films = []
+    monkeypatch.setattr(animation, "film", lambda fig, move, times, **options: films.append((move, times)))
+    animation.landing_film(landed, landed.t[-1] - 0.5 * np.arange(n)[::-1], alt="a landing", duration=50)
+    move, times = films[0]
+    for t in (times[0], times[-1]):
+        assert f"{t:.2f} s" in [part.get_text() for part in move(t) if isinstance(part, Text)]
 
 
 def test_film_has_one_palette_and_few_colours(landing):

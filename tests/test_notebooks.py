@@ -92,6 +92,7 @@ def test_problem_is_found(tmp_path, problem):
     found = course.problems(notebook(tmp_path, BROKEN[problem]))
     assert len(found) == 1
     assert problem in found[0]
+    assert not found[0].startswith("cell") or found[0].startswith("cell [2] ")
 
 
 def test_kernel_and_size_are_checked(tmp_path):

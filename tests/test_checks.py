@@ -80,6 +80,7 @@ def _folder(tmp_path, monkeypatch):
     """A student's folder, and no other; and time enough: how long a check takes is measured in a benchmark."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(feedback, "TIME_LIMIT", 60.0)
+    monkeypatch.setattr(lesson_13.pilot_project, "seconds", 600.0)
     monkeypatch.setattr(record.platformdirs, "user_data_dir", lambda name: str(tmp_path / "user"))
     for exercise in [*checks.EXERCISES.values(), doubled]:
         exercise.tries.clear()

@@ -13,7 +13,7 @@ from ipywidgets import Checkbox, Dropdown, FloatLogSlider, FloatSlider, FloatTex
 from test_guide import settings
 from test_live import NOTEBOOKS, drawn_anew, live_widgets, pixels
 
-from hoverslam_lib import book, recording
+from hoverslam_lib import book, plotting, recording
 from hoverslam_lib.live import Live
 from hoverslam_lib.mission_control import Methods
 
@@ -28,6 +28,7 @@ def lesson(request, tmp_path_factory):
     patch = pytest.MonkeyPatch()
     patch.setattr(Live, "show", lambda self: found.append(self))
     patch.setattr("IPython.display.display", lambda *args, **kwargs: None)
+    patch.setattr(plotting, "show", lambda fig, alt: plt.close(fig))  # these pictures are no matter here
     patch.chdir(tmp_path_factory.mktemp("notebook"))
     with plt.rc_context():
         namespace = {"display": lambda *args, **kwargs: None, "__name__": "__main__"}

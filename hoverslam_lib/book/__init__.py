@@ -168,14 +168,10 @@ def _html(cell):
 
 def _record(path):
     """Run a notebook up to its last live figure and keep what its figures show."""
-    import matplotlib.pyplot as plt
-
-    from hoverslam_lib import plotting
     from hoverslam_lib.live import Live
 
     shown = []
     Live.show = lambda live: shown.append(recording.record(live))
-    plotting.show = lambda fig, alt: plt.close(fig)  # the other pictures are stored already
     kept, cells = _kept(path), nbformat.read(path, as_version=4).cells[: live_cells(path)[-1] + 1]
     names, before = {"__name__": "__main__"}, Path.cwd()
     with tempfile.TemporaryDirectory() as scratch, contextlib.redirect_stdout(io.StringIO()):
